@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// Named columns of one kind: `values` is rows x names.size(), in the order of `names`.
+struct Channels {
+  std::vector<std::string> names;
+  Matrix values;
+
+  Index count() const { return static_cast<Index>(names.size()); }
+
+  /// Column of `name`, or -1. Does not allocate.
+  Index find(const std::string& name) const {
+    const auto it = std::find(names.begin(), names.end(), name);
+    return it == names.end() ? -1 : static_cast<Index>(it - names.begin());
+  }
+};
+
+/// One experiment: what the thermometers, the displacement probes and the control reported, one row per sample.
+///
+/// Units are fixed (the reader converts): temperatures in degC, thermal errors in um, time in s.
+/// Inputs keep the unit of their column. Every member has rows() rows, except that `time_s` may be empty: a batch
+/// without a clock can be fitted, but not simulated.
+struct Batch {
+  std::string name;       ///< file stem or value of the batch column, e.g. "K01"
+  std::string source;     ///< path it was read from; empty when made in memory
+  std::string digest;     ///< SHA-256 of its numbers, hex; empty when made in memory
+  Vector time_s;          ///< strictly increasing; empty when the data have no time
+  Channels temperatures;  ///< degC, absolute
+  Channels errors;        ///< um, the responses
+  Channels inputs;        ///< known inputs: spindle_rpm, feed_mm_min, coolant, …
+
+  Index rows() const {
+    if (temperatures.values.cols() > 0) return temperatures.values.rows();
+    return errors.values.cols() > 0 ? errors.values.rows() : time_s.size();
+  }
+  bool has_time() const { return time_s.size() > 0; }
+};
+
+/// The experiments of one machine, with equal temperature points and errors, in a fixed order.
+using Campaign = std::vector<Batch>;
+
+}  // namespace thermfit

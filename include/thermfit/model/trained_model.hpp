@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/model/linear_model.hpp"
+#include "thermfit/model/training_domain.hpp"
+
+namespace thermfit {
+
+/// A batch a model was trained on, so that the model can be traced to its data.
+struct TrainingBatch {
+  std::string name;
+  Index rows = 0;
+  std::string digest;  ///< SHA-256 of the numbers, hex
+};
+
+/// What stands in for one lost sensor: a model on the others, fitted on the same batches.
+struct SubstituteModel {
+  Index lost = 0;                ///< index into TrainedModel::temperatures
+  LinearModel<> model;           ///< on all sensors in their order, coefficient of the lost one zero
+  Vector residual_deviation_um;  ///< per error, on the training rows
+};
+
+/// The latent variables behind a PLS or PCR model, in standardised units; empty for MLR and ridge.
+struct LatentVariables {
+  Matrix weights, loadings, rotations;                              ///< sensors x components
+  Matrix error_loadings;                                            ///< errors x components
+  Vector explained_temperature_variance, explained_error_variance;  ///< cumulative share per component, 0…1
+  Vector vip;                                                       ///< per sensor
+};
+
+/// A linear model with everything a predictor needs and where it came from: the in-memory `thermfit-model/1`.
+struct TrainedModel {
+  std::string method;     ///< "pls", "mlr", "pcr", "ridge"
+  std::string selection;  ///< how the points were chosen: "correlation", "fcgr", "given", "all"
+  Index components = 0;   ///< latent variables used; 0 for MLR and ridge
+  double ridge_lambda = 0;
+  std::vector<std::string> temperatures;  ///< chosen points, in coefficient order
+  std::vector<std::string> errors;        ///< responses, in coefficient order
+  TemperatureReference reference = TemperatureReference::rise;
+
+  LinearModel<> model;               ///< raw units: um, um/K
+  Matrix standardised_coefficients;  ///< sensors x errors
+  Vector temperature_mean, temperature_scale, error_mean, error_scale;
+  LatentVariables latent;
+  Vector residual_deviation_um;  ///< per error, S of eq. (10) on the training rows
+  Index degrees_of_freedom = 0;
+  double condition_number = 0;  ///< of the standardised temperatures
+  TrainingDomain<> domain;
+  std::vector<SubstituteModel> substitutes;  ///< one per sensor, or none
+  std::vector<TrainingBatch> batches;
+  std::string tool_version;
+};
+
+}  // namespace thermfit

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// How far a sample lies from the rows a model was trained on. Small is familiar.
+template <class Scalar = double>
+struct DomainDistance {
+  Scalar t2;   ///< Hotelling's T2: distance inside the plane of the latent variables
+  Scalar spe;  ///< squared prediction error (Q): distance to that plane, in standardised units squared
+};
+
+/// The region of temperatures a model knows, and the limits beyond which a new sample counts as foreign.
+///
+/// With z = (x - mean) / scale, scores t = rotations' z and residual e = z - loadings t:
+/// T2 = sum_a t_a^2 / score_variance_a, SPE = e'e. (Jackson, A User's Guide to Principal Components, 1991, ch. 2.)
+/// `mean`, `scale`, `lowest`, `highest`: one per sensor, in the model's temperatures. `rotations`, `loadings`:
+/// Sensors x Components. Fixed sizes neither allocate nor throw: this is controller code.
+template <class Scalar = double, int Sensors = Eigen::Dynamic, int Components = Eigen::Dynamic>
+struct TrainingDomain {
+  using PerSensor = Eigen::Matrix<Scalar, Sensors, 1>;
+  PerSensor lowest, highest;  ///< range seen in training
+  PerSensor mean, scale;
+  Eigen::Matrix<Scalar, Sensors, Components> rotations, loadings;
+  Eigen::Matrix<Scalar, Components, 1> score_variance;
+  Scalar t2_limit_95 = 0, t2_limit_99 = 0;    ///< for a new observation
+  Scalar spe_limit_95 = 0, spe_limit_99 = 0;  ///< 0 where the components span all sensors: then SPE is 0 too
+
+  template <class Temperatures>
+  DomainDistance<Scalar> distance(const Eigen::MatrixBase<Temperatures>& temperatures) const noexcept {
+    PerSensor z = (temperatures - mean).cwiseQuotient(scale);
+    const Eigen::Matrix<Scalar, Components, 1> t = rotations.transpose().lazyProduct(z);
+    z.noalias() -= loadings.lazyProduct(t);
+    return {t.cwiseProduct(t).cwiseQuotient(score_variance).sum(), z.squaredNorm()};
+  }
+};
+
+}  // namespace thermfit

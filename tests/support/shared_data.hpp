@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "support/catch.hpp"
+
+/// The folder of reference and measured data that are checked against but not part of the project: THERMFIT_SHARED, or
+/// `../shared` beside the source tree. Empty where it is absent.
+inline std::string shared_folder() {
+  const char* given = std::getenv("THERMFIT_SHARED");
+  const std::filesystem::path folder = given ? given : std::filesystem::path(THERMFIT_SOURCE_DIR) / "../shared";
+  return std::filesystem::is_directory(folder / "data") ? (folder / "data").string() : "";
+}
+
+/// Leaves the test case with a message when the reference data are not on this machine.
+#define REQUIRE_SHARED_DATA(variable)                                                 \
+  const std::string variable = shared_folder();                                       \
+  if (variable.empty()) {                                                             \
+    WARN("skipped: set THERMFIT_SHARED to the folder that holds the reference data"); \
+    return;                                                                           \
+  }
