@@ -1,8 +1,8 @@
 #include "cli/arguments.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "thermfit/io/nearest.hpp"
 #include "thermfit/io/number.hpp"
 
 namespace thermfit::cli {
@@ -19,37 +19,13 @@ const Option* find_option(const std::vector<Option>& options, std::string_view w
 [[noreturn]] void unknown_option(std::string_view word, const std::vector<Option>& options) {
   std::vector<std::string> names;
   for (const Option& option : options) names.push_back(option.name);
-  std::string message = "unknown option " + std::string(word);
-  if (const auto near = nearest(word, names)) message += "; did you mean " + *near + "?";
-  throw UsageError(message);
+  throw UsageError("unknown option " + std::string(word) + did_you_mean(word, names));
 }
 
 /// A word that starts with a dash and is not a number nor stdin.
 bool looks_like_option(const std::string& word) { return word.size() > 1 && word[0] == '-' && !parse_number(word); }
 
 }  // namespace
-
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  std::optional<std::string> best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      std::size_t diagonal = row[0]++;
-      for (std::size_t j = 0; j < candidate.size(); ++j) {
-        const std::size_t substitute = diagonal + (word[i] == candidate[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 Arguments::Arguments(const std::vector<std::string>& words, const std::vector<Option>& options) {
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -143,10 +119,8 @@ std::string Arguments::choice(std::string_view name, const std::vector<std::stri
   const auto text = value(name);
   if (!text) return fallback;
   if (std::find(allowed.begin(), allowed.end(), *text) != allowed.end()) return *text;
-  std::string message = std::string(name) + " is '" + *text + "'; allowed:";
-  for (const std::string& word : allowed) message += ' ' + word;
-  if (const auto near = nearest(*text, allowed)) message += "; did you mean " + *near + "?";
-  throw UsageError(message);
+  throw UsageError(std::string(name) + " is '" + *text + "'; allowed: " + name_list(allowed) +
+                   did_you_mean(*text, allowed));
 }
 
 }  // namespace thermfit::cli

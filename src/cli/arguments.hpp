@@ -53,7 +53,4 @@ class UsageError : public std::exception {
   std::string message_;
 };
 
-/// The candidate closest to `word` by edit distance, if close enough to be a likely typo.
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates);
-
 }  // namespace thermfit::cli

@@ -5,6 +5,7 @@
 
 #include "cli/help.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/io/nearest.hpp"
 #include "thermfit/version.hpp"
 
 namespace thermfit::cli {
@@ -21,9 +22,8 @@ const Command* find_command(const std::string& name) {
 int unknown_command(const std::string& word, Console& console) {
   std::vector<std::string> names;
   for (const Command& command : all_commands()) names.push_back(command.name);
-  std::string message = "unknown command '" + word + "'";
-  if (const auto near = nearest(word, names)) message += "; did you mean '" + *near + "'?";
-  console.note(message + " ('thermfit --help' lists the commands)");
+  console.note("unknown command '" + word + "'" + did_you_mean(word, names) +
+               " ('thermfit --help' lists the commands)");
   return code(Exit::failed);
 }
 
