@@ -1,0 +1,22 @@
+#include "thermfit/io/sha256.hpp"
+
+#include "support/catch.hpp"
+
+using thermfit::sha256_hex;
+
+TEST_CASE("SHA-256 gives the digests published in FIPS 180-4", "[io]") {
+  CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(sha256_hex(std::string(1000000, 'a')) == "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("feeding SHA-256 in pieces of any size changes nothing", "[io]") {
+  const std::string text(1000, 'x');
+  for (const std::size_t piece : {1U, 55U, 56U, 63U, 64U, 65U, 999U}) {
+    thermfit::Sha256 hash;
+    for (std::size_t i = 0; i < text.size(); i += piece) hash.update(std::string_view(text).substr(i, piece));
+    CHECK(hash.hex() == sha256_hex(text));
+  }
+}
