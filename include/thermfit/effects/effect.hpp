@@ -1,0 +1,114 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/error.hpp"
+#include "thermfit/network/thermal_network.hpp"
+
+namespace thermfit {
+
+class ThermalSystem;
+
+/// Where in the chain from heat to reading an effect acts.
+enum class Stage { heat, boundary, conduction, expansion, measurement, initial };
+
+inline const char* word_of(Stage stage) {
+  constexpr const char* words[] = {"heat", "boundary", "conduction", "expansion", "measurement", "initial"};
+  return words[static_cast<int>(stage)];
+}
+
+/// One number of an effect's law: what is known of it before the data are seen.
+struct EffectParameter {
+  std::string name;          ///< key in the machine document, with its unit: "power_W"
+  std::string unit;          ///< "W"; empty for a pure number
+  double mean = 0;           ///< of the prior
+  double sd = 1;             ///< of the prior: of the value, or of its logarithm where `logarithmic`
+  bool logarithmic = false;  ///< positive, fitted as logarithm
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  double null = 0;             ///< the value at which the effect vanishes; ignored where `shapes`
+  bool shapes = false;         ///< only shapes the effect (an exponent, a coolant temperature): no value removes it
+  bool fixed = false;          ///< a scale that is chosen, not fitted
+  std::vector<double> starts;  ///< where to begin fitting; empty: at `mean`
+};
+
+/// What candidates() may use: the machine and what its data can show.
+struct Setting {
+  ThermalNetwork network;
+  std::vector<std::string> inputs;           ///< input columns that vary within the campaign
+  std::vector<std::string> constant_inputs;  ///< input columns that never change
+  std::vector<std::string> on_off_inputs;    ///< those of `inputs` with exactly two values, one of them 0
+  std::vector<double> largest;               ///< largest absolute value of each of `inputs`
+  double shortest_batch_s = 0, longest_batch_s = 0, median_step_s = 0;
+  bool ambient_measured = false;  ///< a sensor mapped to ambient is in the data
+  bool ambient_varies = false;    ///< and it moves within at least one batch
+
+  double largest_of(const std::string& input) const {
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      if (inputs[i] == input) return largest[i];
+    return 1;
+  }
+};
+
+/// One physical effect: its places, its parameters and its law. Stateless; the data of an effect that acts on a machine
+/// is a ThermalNetwork::AddedEffect. The catalogue is a list of these, and users add their own.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual std::string name() const = 0;
+  virtual Stage stage() const = 0;
+  /// Every place and driver where it can act on this machine, with parameters at their starting values.
+  virtual std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const = 0;
+  /// Its parameters for this place, in the order in which the law receives them. Throws Error on an unknown place.
+  virtual std::vector<EffectParameter> parameters(const ThermalNetwork& network,
+                                                  const ThermalNetwork::AddedEffect& added) const = 0;
+  /// Adds its law to the system: see thermal_system.hpp for what can be added.
+  virtual void act(ThermalSystem& system, const ThermalNetwork& network,
+                   const ThermalNetwork::AddedEffect& added) const = 0;
+};
+
+/// The effects a simulation knows by name, in a fixed order.
+class EffectLibrary {
+ public:
+  EffectLibrary& add(std::shared_ptr<const Effect> effect) {
+    effects_.push_back(std::move(effect));
+    return *this;
+  }
+  const std::vector<std::shared_ptr<const Effect>>& all() const { return effects_; }
+  std::vector<std::string> names() const {
+    std::vector<std::string> result;
+    for (const auto& effect : effects_) result.push_back(effect->name());
+    return result;
+  }
+  const Effect* find(const std::string& name) const {
+    for (const auto& effect : effects_)
+      if (effect->name() == name) return effect.get();
+    return nullptr;
+  }
+  /// Throws Error naming the known effects.
+  const Effect& at(const std::string& name) const {
+    if (const Effect* effect = find(name)) return *effect;
+    std::string known;
+    for (const auto& effect : effects_) known += (known.empty() ? "" : ", ") + effect->name();
+    throw Error("effect", "'" + name + "' is not known", known, "add it to the library or correct the name");
+  }
+  /// All candidates of all effects, in order.
+  std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const {
+    std::vector<ThermalNetwork::AddedEffect> result;
+    for (const auto& effect : effects_)
+      for (auto& one : effect->candidates(setting)) result.push_back(std::move(one));
+    return result;
+  }
+
+ private:
+  std::vector<std::shared_ptr<const Effect>> effects_;
+};
+
+/// What the data of a campaign can show of this machine.
+Setting setting_of(const ThermalNetwork& network, const Campaign& campaign);
+
+}  // namespace thermfit

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// The machine as a lumped thermal network, as plain data; the contents of `thermfit-machine/1`.
+///
+/// C_i dtheta_i/dt = sum_j G_ij (theta_j - theta_i) + H_i (theta_amb - theta_i) + sum_s w_si P_s (u_s/scale_s)^m_s
+/// z = sum_i e_i (theta_i - reference), minus its first sample where `zero_at_first_sample`.
+///
+/// Parts refer to nodes by index. network_check.hpp tells what a network must hold to be simulated.
+struct ThermalNetwork {
+  struct Node {
+    std::string name;
+    double capacity_J_per_K = 0;
+    double ambient_W_per_K = 0;
+  };
+  struct Link {
+    Index a = 0, b = 0;
+    double conductance_W_per_K = 0;
+  };
+  struct HeatSource {
+    std::string name;
+    std::string input;  ///< a batch column, or "constant" for (u/scale) = 1
+    double scale = 1;
+    double exponent = 1;
+    double power_W = 0;
+    std::vector<std::pair<Index, double>> into;  ///< node, share; the shares add to 1
+  };
+  struct Displacement {
+    std::string output;  ///< the batch column it is compared with
+    bool zero_at_first_sample = true;
+    std::vector<std::pair<Index, double>> um_per_K;  ///< node, expansion
+  };
+  struct Sensor {
+    std::string column;
+    Index node = 0;       ///< ambient_node for a sensor in the air
+    double offset_K = 0;  ///< reading = temperature of the node + offset
+  };
+  struct Ambient {
+    enum class Rule {
+      column,          ///< measured: linear between the samples of `column`
+      constant,        ///< `value_degC`
+      initial,         ///< the first reading of the sensor mapped to ambient_node, held
+      first_sample_of  ///< the first reading of `column`, held
+    };
+    Rule rule = Rule::initial;
+    std::string column;
+    double value_degC = 0;
+  };
+  struct Initial {
+    enum class Rule {
+      ambient,   ///< every node starts at the first ambient temperature
+      measured,  ///< nodes with a sensor start at its first reading minus offset, others at ambient
+      given      ///< nodes listed in `degC` start there, others at ambient
+    };
+    Rule rule = Rule::ambient;
+    std::vector<std::pair<Index, double>> degC;
+  };
+  /// Prior standard deviations of the calibration: relative, except for the sensor offset.
+  struct Uncertainty {
+    double capacity = 0.3, ambient = 0.3, conductance = 0.3, power = 0.3, um_per_K = 0.3;
+    double sensor_offset_K = 0.5;
+  };
+  /// An effect of the catalogue that was added: its law is looked up by name, see effects/effect.hpp.
+  struct AddedEffect {
+    std::string effect;
+    std::string location;
+    std::string driver;  ///< empty where the law has none
+    std::vector<std::pair<std::string, double>> parameters;
+
+    /// Value of a parameter by name; `fallback` where it is absent.
+    double value(const std::string& name, double fallback = 0) const {
+      for (const auto& [key, number] : parameters)
+        if (key == name) return number;
+      return fallback;
+    }
+  };
+
+  static constexpr Index ambient_node = -1;
+
+  std::string name;
+  double reference_degC = 20;
+  Ambient ambient;
+  std::vector<Node> nodes;
+  std::vector<Link> links;
+  std::vector<HeatSource> heat_sources;
+  std::vector<Displacement> displacements;
+  std::vector<Sensor> sensors;
+  Initial initial;
+  Uncertainty uncertainty;
+  std::vector<AddedEffect> effects;
+
+  Index node_count() const { return static_cast<Index>(nodes.size()); }
+
+  /// Index of the node of this name, or -1. Does not allocate.
+  Index find_node(const std::string& node) const {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (nodes[i].name == node) return static_cast<Index>(i);
+    return -1;
+  }
+
+  /// Index of the link between two nodes, in either order, or -1. Does not allocate.
+  Index find_link(Index a, Index b) const {
+    for (std::size_t i = 0; i < links.size(); ++i)
+      if ((links[i].a == a && links[i].b == b) || (links[i].a == b && links[i].b == a)) return static_cast<Index>(i);
+    return -1;
+  }
+};
+
+}  // namespace thermfit
