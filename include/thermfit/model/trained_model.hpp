@@ -5,6 +5,7 @@
 
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/model/linear_model.hpp"
+#include "thermfit/model/sensor_envelope.hpp"
 #include "thermfit/model/training_domain.hpp"
 
 namespace thermfit {
@@ -49,6 +50,7 @@ struct TrainedModel {
   Index degrees_of_freedom = 0;
   double condition_number = 0;  ///< of the standardised temperatures
   TrainingDomain<> domain;
+  SensorEnvelope envelope;                   ///< of the chosen points, absolute; empty when unknown
   std::vector<SubstituteModel> substitutes;  ///< one per sensor, or none
   std::vector<TrainingBatch> batches;
   std::string tool_version;
