@@ -36,6 +36,7 @@ TrainedModel example() {
   d.rotations = d.loadings = v.weights;
   d.score_variance = Vector::Ones(1);
   d.t2_limit_95 = 4, d.t2_limit_99 = 7, d.spe_limit_95 = .1, d.spe_limit_99 = .2;
+  m.envelope = {Vector::Constant(2, 18), Vector::Constant(2, 31.5), Vector::Constant(2, .4), Vector::Constant(2, 25)};
   m.substitutes = {{0, {(Matrix(2, 1) << 0, 3.6).finished(), Vector::Constant(1, 6)}, Vector::Constant(1, 3)}};
   m.batches = {{"K01", 79, std::string(64, 'a')}};
   return m;
@@ -65,6 +66,7 @@ TEST_CASE("a model saved and loaded is the same to the last bit", "[io]") {
   CHECK(model_to_json(loaded).dump() == model_to_json(example()).dump());
   CHECK(loaded.model.coefficients(1, 0) == 1.0 / 3);
   CHECK(loaded.temperatures == std::vector<std::string>{"T5", "T1"});
+  CHECK(loaded.envelope.largest_rate_K_per_min(1) == .4);
   CHECK(loaded.substitutes.at(0).model.coefficients(1, 0) == 3.6);
 }
 

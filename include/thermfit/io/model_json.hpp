@@ -157,6 +157,16 @@ void describe_model(Archive& io, TrainedModel& m) {
     inner.number("spe_limit_95", d.spe_limit_95);
     inner.number("spe_limit_99", d.spe_limit_99);
   });
+  io.object("sensor_envelope", true, [&](auto& inner) {
+    SensorEnvelope& e = m.envelope;
+    std::string known = e.has_rates() ? "range and rates" : e.has_range() ? "range" : "nothing";
+    inner.choice("known", known, {"nothing", "range", "range and rates"});
+    const Index ranges = known == "nothing" ? 0 : p, rates = known == "range and rates" ? p : 0;
+    inner.vector("lowest_degC", e.lowest_degC, ranges);
+    inner.vector("highest_degC", e.highest_degC, ranges);
+    inner.vector("largest_rate_K_per_min", e.largest_rate_K_per_min, rates);
+    inner.vector("longest_still_min", e.longest_still_min, rates);
+  });
   io.list("substitutes", m.substitutes, p, [&](auto& inner, SubstituteModel& s) {
     inner.integer("lost", s.lost, p - 1);
     inner.vector("intercept_um", s.model.intercept, q);
