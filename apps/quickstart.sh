@@ -3,9 +3,9 @@
 set -eu
 cd "$(dirname "$0")/.."
 sh apps/install_packages.sh build
-cmake --preset release -DTHERMFIT_BUILD_TESTS=OFF >build.log 2>&1 &&
-  cmake --build --preset release --target thermfit_app >>build.log 2>&1 ||
+cmake --preset quickstart >build.log 2>&1 &&
+  cmake --build --preset quickstart --target thermfit_app >>build.log 2>&1 ||
   { cat build.log; exit 2; }
 rm build.log
-echo "thermfit: built build/release/thermfit"
-exec build/release/thermfit study data/vcenter55/
+echo "thermfit: built build/quickstart/thermfit"
+exec build/quickstart/thermfit study data/vcenter55/

@@ -1,9 +1,13 @@
-#include "cli/command.hpp"
+#include "commands/commands.hpp"
 
 namespace thermfit::cli {
 
 const std::vector<Command>& all_commands() {
-  static const std::vector<Command> commands{};
+  static const std::vector<Command> commands{
+      // clang-format off: one a line, in the order of the work
+      inspect_command(),
+      // clang-format on
+  };
   return commands;
 }
 

@@ -1,0 +1,128 @@
+#include "report/model_report.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "cli/table.hpp"
+#include "thermfit/io/nearest.hpp"
+#include "thermfit/io/number.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
+
+void print_points(const TrainedModel& m, Console& console) {
+  std::vector<std::string> header{"point"};
+  for (const std::string& error : m.errors) header.push_back(error + " um/K");
+  for (const std::string& error : m.errors) header.push_back(error + " std.");
+  for (const char* name : {"mean", "sd", "lowest", "highest"}) header.emplace_back(name);
+  const bool latent = m.latent.vip.size() > 0;
+  if (latent) header.emplace_back("VIP");
+  Table table(header);
+  for (Index i = 0; i < m.model.sensors(); ++i) {
+    std::vector<std::string> row{m.temperatures[static_cast<std::size_t>(i)]};
+    for (Index j = 0; j < m.model.errors(); ++j) row.push_back(fixed_text(m.model.coefficients(i, j), 3));
+    for (Index j = 0; j < m.model.errors(); ++j) row.push_back(fixed_text(m.standardised_coefficients(i, j), 3));
+    row.push_back(fixed_text(m.temperature_mean(i), 2));
+    row.push_back(fixed_text(m.temperature_scale(i), 2));
+    row.push_back(fixed_text(m.domain.lowest(i), 1));
+    row.push_back(fixed_text(m.domain.highest(i), 1));
+    if (latent) row.push_back(fixed_text(m.latent.vip(i), 2));
+    table.add(row);
+  }
+  console.print(table.text(2));
+}
+
+void print_components(const TrainedModel& m, Console& console) {
+  if (m.components == 0) return;
+  Table table({"latent variable", "T explained", "error explained"});
+  for (Index a = 0; a < m.components; ++a)
+    table.add({std::to_string(a + 1), fixed_text(100 * m.latent.explained_temperature_variance(a), 2) + " %",
+               fixed_text(100 * m.latent.explained_error_variance(a), 2) + " %"});
+  console.line();
+  console.print(table.text(2));
+}
+
+void print_substitutes(const TrainedModel& m, Console& console) {
+  if (m.substitutes.empty()) return;
+  console.line("\nIf one sensor is lost, a substitute on the others takes over:");
+  std::vector<std::string> header{"lost"};
+  for (const std::string& error : m.errors) header.push_back("S of " + error + ", um");
+  Table table(header);
+  const auto row = [&](const std::string& name, const Vector& deviation) {
+    std::vector<std::string> cells{name};
+    for (const double value : deviation) cells.push_back(fixed_text(value, 2));
+    table.add(cells);
+  };
+  row("none", m.residual_deviation_um);
+  for (const SubstituteModel& substitute : m.substitutes)
+    row(m.temperatures[static_cast<std::size_t>(substitute.lost)], substitute.residual_deviation_um);
+  console.print(table.text(2));
+}
+
+}  // namespace
+
+std::string reference_in_words(TemperatureReference reference) {
+  return reference == TemperatureReference::rise ? "temperature rise since the first row of the batch, K"
+                                                 : "temperature, degC";
+}
+
+std::string model_title(const TrainedModel& m) {
+  std::string text = upper(m.method);
+  if (m.components > 0)
+    text += ", " + std::to_string(m.components) + " latent variable" + (m.components > 1 ? "s" : "");
+  if (m.method == "ridge") text += ", lambda " + general_text(m.ridge_lambda, 4);
+  text += ", on " + name_list(m.temperatures, 12);
+  if (m.selection == "given") return text + " (as told)";
+  if (m.selection == "all") return text + " (all points)";
+  return text + " (chosen by " + m.selection + ")";
+}
+
+std::string model_equation(const TrainedModel& m, Index error) {
+  std::string text = m.errors[static_cast<std::size_t>(error)] + " = " + fixed_text(m.model.intercept(error), 3);
+  for (Index i = 0; i < m.model.sensors(); ++i) {
+    const double c = m.model.coefficients(i, error);
+    text += (c < 0 ? " - " : " + ") + fixed_text(c < 0 ? -c : c, 3) + ' ' + m.temperatures[static_cast<std::size_t>(i)];
+  }
+  return text;
+}
+
+void print_model(const TrainedModel& m, Console& console) {
+  console.print(wrap(console.strong(model_title(m)), 80, 2));
+  for (Index j = 0; j < m.model.errors(); ++j) console.print(wrap("  " + model_equation(m, j), 80, 6));
+  console.line("  errors in um; " + reference_in_words(m.reference) + "\n");
+  print_points(m, console);
+  print_components(m, console);
+
+  Index rows = 0;
+  std::vector<std::string> names;
+  for (const TrainingBatch& batch : m.batches) rows += batch.rows, names.push_back(batch.name);
+  console.line();
+  console.print(wrap(
+      "Trained on " + std::to_string(rows) + " rows of " + name_list(names, 24) + "; residual standard " +
+          "deviation S" +
+          [&] {
+            std::string text;
+            for (Index j = 0; j < m.model.errors(); ++j)
+              text += (j ? ", " : " ") + m.errors[static_cast<std::size_t>(j)] + ' ' +
+                      fixed_text(m.residual_deviation_um(j), 2) + " um";
+            return text;
+          }() +
+          ", " + std::to_string(m.degrees_of_freedom) + " degrees of freedom; condition number of the " +
+          "standardised temperatures " + general_text(m.condition_number, 3) + ".",
+      80, 2));
+  console.print(wrap("A new sample is foreign to this model when T2 exceeds " + general_text(m.domain.t2_limit_95, 3) +
+                         " (95 %) or " + general_text(m.domain.t2_limit_99, 3) + " (99 %)" +
+                         (m.domain.spe_limit_99 > 0 ? ", or SPE " + general_text(m.domain.spe_limit_95, 3) + " or " +
+                                                          general_text(m.domain.spe_limit_99, 3)
+                                                    : std::string()) +
+                         ".",
+                     80, 2));
+  print_substitutes(m, console);
+}
+
+}  // namespace thermfit::cli
