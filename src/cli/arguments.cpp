@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "thermfit/io/nearest.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "cli/table.hpp"
 #include "thermfit/io/nearest.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit::cli {
 namespace {

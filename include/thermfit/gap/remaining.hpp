@@ -11,7 +11,7 @@
 #include "thermfit/gap/even_series.hpp"
 #include "thermfit/gap/follows.hpp"
 #include "thermfit/gap/whiteness.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 

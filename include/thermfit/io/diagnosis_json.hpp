@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "thermfit/gap/diagnosis.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 

@@ -12,7 +12,7 @@
 
 #include "thermfit/error.hpp"
 #include "thermfit/io/nearest.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
