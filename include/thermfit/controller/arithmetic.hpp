@@ -1,0 +1,30 @@
+#pragma once
+
+/// Comparisons that NaN fails. Everything in controller/ rests on them, so flags that break them are refused here.
+/// Fixed sizes, no heap, no exceptions, no Eigen: a model is constant data that a linker can place in flash.
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#error "thermfit: the controller needs comparisons that NaN fails; build it without -ffast-math / -ffinite-math-only"
+#endif
+
+#include <limits>
+
+namespace thermfit {
+
+/// Whether `lowest <= value <= highest`; false for NaN anywhere.
+template <class Scalar>
+constexpr bool within(Scalar value, Scalar lowest, Scalar highest) noexcept {
+  return lowest <= value && value <= highest;
+}
+
+template <class Scalar>
+constexpr bool is_finite(Scalar value) noexcept {
+  return within(value, std::numeric_limits<Scalar>::lowest(), std::numeric_limits<Scalar>::max());
+}
+
+template <class Scalar>
+constexpr Scalar magnitude(Scalar value) noexcept {
+  return value < 0 ? -value : value;
+}
+
+}  // namespace thermfit

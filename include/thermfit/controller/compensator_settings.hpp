@@ -1,0 +1,54 @@
+#pragma once
+
+#include "thermfit/controller/domain_guard.hpp"
+#include "thermfit/controller/sensor_guard.hpp"
+#include "thermfit/controller/slew_limit.hpp"
+
+namespace thermfit {
+
+/// What the offset means. Controls differ, and a wrong sign doubles the error: it is written out everywhere.
+enum class OutputSign : std::int8_t {
+  error = 1,       ///< offset = predicted thermal error
+  correction = -1  ///< offset = minus the predicted error: what is added to the axis command
+};
+
+/// How a compensator behaves. Everything is per step, since a controller counts cycles; settings_for.hpp makes these
+/// from seconds and micrometres per second.
+template <class Scalar, int Sensors, int Errors>
+struct CompensatorSettings {
+  Row<SensorLimits<Scalar>, Sensors> sensors{};  ///< range, rate and stuck check of each sensor
+  GuardPatience<Scalar> patience{};              ///< when a sensor is lost and when it is trusted again
+  std::uint32_t hold_steps = 600;  ///< steps an offset may be held before it ramps to zero; 0: ramps at once
+  DomainPolicy domain_policy = DomainPolicy::warn;
+  Row<OutputLimits<Scalar>, Errors> outputs{};  ///< clamp and slew of each axis
+  OutputSign sign = OutputSign::correction;
+};
+
+/// Text of the first rule that `settings` break, or nullptr. A compensator refuses to start with broken settings.
+template <class Scalar, int Sensors, int Errors>
+constexpr const char* broken_rule(const CompensatorSettings<Scalar, Sensors, Errors>& settings) noexcept {
+  constexpr Scalar most = Scalar(1e6);  // so that no product in the guard overflows, not even in float
+  for (const SensorLimits<Scalar>& sensor : settings.sensors) {
+    if (!within(sensor.lowest_degC, -most, most) || !within(sensor.highest_degC, -most, most))
+      return "sensors: lowest_degC and highest_degC lie within -1e6 to 1e6";
+    if (!(sensor.lowest_degC < sensor.highest_degC)) return "sensors: lowest_degC is below highest_degC";
+    if (!(sensor.largest_step_K > 0 && sensor.largest_step_K <= most))
+      return "sensors: largest_step_K is above 0 and at most 1e6";
+  }
+  const GuardPatience<Scalar>& patience = settings.patience;
+  if (patience.lost_after_steps < 1 || patience.recover_after_steps < 1)
+    return "patience: lost_after_steps and recover_after_steps are at least 1";
+  if (!(patience.others_moved_K > 0 && patience.others_moved_K <= most))
+    return "patience: others_moved_K is above 0 and at most 1e6";
+  for (const OutputLimits<Scalar>& output : settings.outputs) {
+    if (!(output.clamp_um > 0 && output.clamp_um <= most)) return "outputs: clamp_um is above 0 and at most 1e6";
+    if (!(output.slew_um_per_step > 0 && output.slew_um_per_step <= most))
+      return "outputs: slew_um_per_step is above 0 and at most 1e6";
+  }
+  if (settings.domain_policy > DomainPolicy::hold) return "domain_policy is one of ignore, warn, shrink, hold";
+  if (settings.sign != OutputSign::error && settings.sign != OutputSign::correction)
+    return "sign is error or correction";
+  return nullptr;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cmath>
+
+#include "thermfit/controller/arithmetic.hpp"
+#include "thermfit/controller/controller_model.hpp"
+
+namespace thermfit {
+
+/// What to do with a sample unlike those the model was trained on.
+enum class DomainPolicy : std::uint8_t {
+  ignore,  ///< do not look
+  warn,    ///< follow the model, say so in the status
+  shrink,  ///< follow the model at the edge of the domain, on the way from the sample to the domain's mean
+  hold     ///< treat the sample as unusable
+};
+
+/// Tells how far out a sample lies: T2 and SPE as in training_domain.hpp.
+template <class Scalar, int Sensors, int Components>
+class DomainGuard {
+ public:
+  using Domain = ControllerDomain<Scalar, Sensors, Components>;
+
+  /// Only dynamic rows allocate.
+  void reset(const Domain& domain) { detail::set_size(scores_, domain.inverse_score_variance.size()); }
+
+  /// 1 inside the domain; else the factor in 0…1 by which the way from the mean to `temperatures` must shrink for the
+  /// sample to lie on the edge: sqrt(limit / distance), the smaller of T2's and SPE's. 0 when that is no number.
+  Scalar share_inside(const Domain& domain, const Row<Scalar, Sensors>& temperatures) noexcept {
+    Scalar t2 = 0, spe = 0;
+    for (std::size_t a = 0; a < scores_.size(); ++a) {
+      Scalar score = 0;
+      for (std::size_t i = 0; i < domain.mean.size(); ++i)
+        score += domain.rotations[a][i] * ((temperatures[i] - domain.mean[i]) * domain.inverse_scale[i]);
+      scores_[a] = score;
+      t2 += score * score * domain.inverse_score_variance[a];
+    }
+    for (std::size_t i = 0; i < domain.mean.size(); ++i) {
+      Scalar residual = (temperatures[i] - domain.mean[i]) * domain.inverse_scale[i];
+      for (std::size_t a = 0; a < scores_.size(); ++a) residual -= domain.loadings[a][i] * scores_[a];
+      spe += residual * residual;
+    }
+    Scalar share = 1;
+    if (domain.t2_limit > 0 && !(t2 <= domain.t2_limit)) share = domain.t2_limit / t2;
+    if (domain.spe_limit > 0 && !(spe <= domain.spe_limit) && !(share <= domain.spe_limit / spe))
+      share = domain.spe_limit / spe;
+    if (!within(share, Scalar(0), Scalar(1))) return 0;
+    return share < 1 ? std::sqrt(share) : share;
+  }
+
+ private:
+  Row<Scalar, Components> scores_{};
+};
+
+}  // namespace thermfit

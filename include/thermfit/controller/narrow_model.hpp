@@ -1,0 +1,101 @@
+#pragma once
+
+#include <string>
+
+#include "thermfit/controller/arithmetic.hpp"
+#include "thermfit/controller/controller_model.hpp"
+#include "thermfit/controller/dynamic_row.hpp"
+#include "thermfit/error.hpp"
+#include "thermfit/model/trained_model.hpp"
+
+/// Host only: from the model as fitted to the model as it runs.
+
+namespace thermfit {
+
+/// Which limit of the training domain counts: 5 % or 1 % of ordinary samples lie beyond it.
+enum class DomainLimit { percent_95, percent_99 };
+
+namespace detail {
+
+/// Rounds to Scalar; a value that this makes infinite, or that was not finite before, is an error.
+template <class Scalar>
+Scalar narrowed(double value, const std::string& name) {
+  const auto result = static_cast<Scalar>(value);
+  if (!is_finite(result)) throw Error(name, "a value that the controller's number type cannot hold");
+  return result;
+}
+
+template <class T, int Size>
+void fit_size(Row<T, Size>& row, Index size, const char* what) {
+  if (Size != dynamic_size && Size != size)
+    throw Error("controller model", std::to_string(size) + ' ' + what, std::to_string(Size),
+                "change the sizes of the ControllerModel, or fit a model of that size");
+  set_size(row, static_cast<std::size_t>(size));
+}
+
+template <class Scalar, int Size, class Values>
+void fill(Row<Scalar, Size>& row, const Values& values, const char* what) {
+  fit_size<Scalar, Size>(row, values.size(), what);
+  for (Index i = 0; i < values.size(); ++i) row[static_cast<std::size_t>(i)] = narrowed<Scalar>(values(i), what);
+}
+
+template <class Scalar, int Rows, int Size>
+void fill_columns(Row<Row<Scalar, Size>, Rows>& rows, const Matrix& columns, const char* row, const char* what) {
+  fit_size<Row<Scalar, Size>, Rows>(rows, columns.cols(), row);
+  for (Index j = 0; j < columns.cols(); ++j)
+    fill<Scalar, Size>(rows[static_cast<std::size_t>(j)], columns.col(j), what);
+}
+
+}  // namespace detail
+
+/// The fixed-size (or, on the host, dynamic) controller model that computes what `trained` predicts.
+/// Throws Error when a size differs from the type's, or a value cannot be held; nothing is cut or padded. Components
+/// are those of the training domain. Sensors above 254 have no place in the status word and are refused.
+template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size, int Components = dynamic_size>
+ControllerModel<Scalar, Sensors, Errors, Components> narrow_model(const TrainedModel& trained,
+                                                                  DomainLimit limit = DomainLimit::percent_99) {
+  using Model = ControllerModel<Scalar, Sensors, Errors, Components>;
+  Model model;
+  const Index sensors = trained.model.sensors();
+  if (sensors < 1 || sensors > 254)
+    throw Error("controller model", std::to_string(sensors) + " sensors", "1 to 254", "choose fewer points");
+  const auto fill_equation = [](typename Model::Equation& equation, const LinearModel<>& from) {
+    detail::fill_columns<Scalar, Errors, Sensors>(equation.coefficients, from.coefficients, "errors", "sensors");
+    detail::fill<Scalar, Errors>(equation.intercept_um, from.intercept, "errors");
+  };
+  model.rise = trained.reference == TemperatureReference::rise;
+  fill_equation(model.equation, trained.model);
+
+  const LinearModel<> nothing{Matrix::Zero(sensors, trained.model.errors()), Vector::Zero(trained.model.errors())};
+  detail::fit_size<typename Model::Equation, Sensors>(model.substitutes, sensors, "sensors");
+  detail::fit_size<bool, Sensors>(model.has_substitute, sensors, "sensors");
+  for (auto& substitute : model.substitutes) fill_equation(substitute, nothing);
+  for (const SubstituteModel& substitute : trained.substitutes) {
+    const auto lost = static_cast<std::size_t>(substitute.lost);
+    if (substitute.lost < 0 || substitute.lost >= sensors || substitute.model.coefficients.rows() != sensors)
+      throw Error("controller model", "a substitute for sensor " + std::to_string(substitute.lost), "0 to sensors - 1");
+    fill_equation(model.substitutes[lost], substitute.model);
+    for (auto& row : model.substitutes[lost].coefficients) row[lost] = 0;
+    model.has_substitute[lost] = true;
+  }
+
+  const TrainingDomain<>& domain = trained.domain;
+  const bool known = domain.mean.size() == sensors;
+  const Vector mean = known ? domain.mean : Vector::Zero(sensors);
+  const Vector inverse_scale = known ? Vector(domain.scale.cwiseInverse()) : Vector::Ones(sensors);
+  detail::fill<Scalar, Sensors>(model.domain.mean, mean, "sensors");
+  detail::fill<Scalar, Sensors>(model.domain.inverse_scale, inverse_scale, "sensors");
+  detail::fill_columns<Scalar, Components, Sensors>(model.domain.rotations, domain.rotations, "components", "sensors");
+  detail::fill_columns<Scalar, Components, Sensors>(model.domain.loadings, domain.loadings, "components", "sensors");
+  detail::fill<Scalar, Components>(model.domain.inverse_score_variance, domain.score_variance.cwiseInverse(),
+                                   "components");
+  const bool wide = limit == DomainLimit::percent_99;
+  const auto bounded = [](double value) { return std::isfinite(value) ? value : 0; };  // no limit: not checked
+  model.domain.t2_limit = detail::narrowed<Scalar>(bounded(wide ? domain.t2_limit_99 : domain.t2_limit_95), "T2 limit");
+  model.domain.spe_limit =
+      detail::narrowed<Scalar>(bounded(wide ? domain.spe_limit_99 : domain.spe_limit_95), "SPE limit");
+  detail::fill<Scalar, Errors>(model.centre_um, trained.model.predict(mean), "errors");
+  return model;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "thermfit/controller/compensator_settings.hpp"
+#include "thermfit/controller/narrow_model.hpp"
+
+/// Host only: a compensator's settings in the units people think in.
+
+namespace thermfit {
+
+/// Wishes about a compensator. What is left empty follows from the model.
+struct CompensationWishes {
+  double period_s = 1;             ///< of the controller cycle that calls step()
+  std::optional<double> clamp_um;  ///< default: |mean| + 4 standard deviations of the training errors, rounded up
+  double slew_um_per_s = 1;        ///< the slowest of the controls in export cards follows 1 um/s
+  double lost_after_s = 5;         ///< bad readings for so long make a sensor lost
+  double recover_after_s = 30;     ///< good readings for so long make it trusted again
+  double hold_s = 600;             ///< an offset is held at most so long, then ramps to zero
+  double range_margin_K = 20;      ///< readings may lie so far outside those of training
+  double rate_factor = 5;          ///< and change so many times faster,
+  double rate_floor_K = 1;         ///< plus one step of this size for noise and resolution
+  double stuck_factor = 3;         ///< and rest so many times longer; 0: stuck sensors are not looked for
+  double others_moved_K = 2;       ///< while the others moved by this on average
+  DomainPolicy domain_policy = DomainPolicy::warn;
+  DomainLimit domain_limit = DomainLimit::percent_99;
+  OutputSign sign = OutputSign::correction;
+};
+
+namespace detail {
+
+inline std::uint32_t steps_in(double time_s, double period_s) {
+  return static_cast<std::uint32_t>(std::min(1e9, std::ceil(time_s / period_s - 1e-9)));
+}
+
+}  // namespace detail
+
+/// Settings per step from `wishes` and what `trained` knows of its sensors. A model without a sensor envelope gives
+/// the range -50…150 degC and no rate or stuck check. Throws Error when the result breaks a rule of
+/// CompensatorSettings, naming it.
+template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size>
+CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& trained,
+                                                          const CompensationWishes& wishes = {}) {
+  if (!(wishes.period_s > 0)) throw Error("period_s", "not above 0", "the cycle time in seconds");
+  CompensatorSettings<Scalar, Sensors, Errors> settings;
+  const SensorEnvelope& known = trained.envelope;
+  detail::fit_size<SensorLimits<Scalar>, Sensors>(settings.sensors, trained.model.sensors(), "sensors");
+  for (Index i = 0; i < trained.model.sensors(); ++i) {
+    SensorLimits<Scalar>& limits = settings.sensors[static_cast<std::size_t>(i)];
+    limits.lowest_degC = static_cast<Scalar>(known.has_range() ? known.lowest_degC(i) - wishes.range_margin_K : -50);
+    limits.highest_degC = static_cast<Scalar>(known.has_range() ? known.highest_degC(i) + wishes.range_margin_K : 150);
+    limits.largest_step_K = Scalar(1e6);
+    if (!known.has_rates()) continue;
+    const double per_step_K = known.largest_rate_K_per_min(i) / 60 * wishes.period_s;
+    limits.largest_step_K = static_cast<Scalar>(wishes.rate_floor_K + wishes.rate_factor * per_step_K);
+    const double still_s = 60 * known.longest_still_min(i) * wishes.stuck_factor;
+    limits.stuck_steps = still_s > 0 ? std::max(2u, detail::steps_in(still_s, wishes.period_s)) : 0;
+  }
+  settings.patience = {std::max(1u, detail::steps_in(wishes.lost_after_s, wishes.period_s)),
+                       std::max(1u, detail::steps_in(wishes.recover_after_s, wishes.period_s)),
+                       static_cast<Scalar>(wishes.others_moved_K)};
+  settings.hold_steps = detail::steps_in(wishes.hold_s, wishes.period_s);
+  settings.domain_policy = trained.domain.score_variance.size() > 0 ? wishes.domain_policy : DomainPolicy::ignore;
+  settings.sign = wishes.sign;
+  detail::fit_size<OutputLimits<Scalar>, Errors>(settings.outputs, trained.model.errors(), "errors");
+  for (Index j = 0; j < trained.model.errors(); ++j) {
+    const double usual_um = std::ceil(std::abs(trained.error_mean(j)) + 4 * trained.error_scale(j));
+    settings.outputs[static_cast<std::size_t>(j)] = {static_cast<Scalar>(wishes.clamp_um.value_or(usual_um)),
+                                                     static_cast<Scalar>(wishes.slew_um_per_s * wishes.period_s)};
+  }
+  if (const char* rule = broken_rule(settings)) throw Error("compensator settings", "a broken rule", rule);
+  return settings;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+namespace thermfit {
+
+/// What the compensator is doing.
+enum class CompensatorState : std::uint8_t {
+  off,           ///< not started, or stopped and back at zero: offset 0
+  starting,      ///< waiting for the first usable readings: offset held where it was taken over
+  tracking,      ///< offset follows the model
+  substituting,  ///< one sensor is lost: offset follows the model made without it
+  holding,       ///< no demand to trust: offset held
+  fallback,      ///< held too long: offset ramps to zero and waits for readings to trust
+  stopping       ///< offset ramps to zero, then off
+};
+constexpr int compensator_states = 7;
+
+/// What can happen to it. Each step raises exactly one of the middle four; then at_zero where that is the case.
+enum class CompensatorEvent : std::uint8_t {
+  start,              ///< told to start, also while running
+  stop,               ///< told to stop
+  demand,             ///< all sensors can be trusted and the sample may be followed
+  substitute_demand,  ///< all but one, and there is a substitute for that one
+  no_demand,          ///< neither
+  hold_expired,       ///< neither, for longer than the hold time-out
+  at_zero             ///< every offset is zero
+};
+constexpr int compensator_events = 7;
+
+/// The state after `event`. This table is the whole behaviour; rows are states, columns events, in the order above.
+constexpr CompensatorState next_state(CompensatorState state, CompensatorEvent event) noexcept {
+  using S = CompensatorState;
+  // clang-format off
+  constexpr S table[compensator_states][compensator_events] = {
+    //                  start        stop         demand       substitute_demand  no_demand    hold_expired  at_zero
+    /* off          */ {S::starting, S::off,      S::off,      S::off,            S::off,      S::off,       S::off},
+    /* starting     */ {S::starting, S::stopping, S::tracking, S::substituting,   S::starting, S::fallback,  S::starting},
+    /* tracking     */ {S::starting, S::stopping, S::tracking, S::substituting,   S::holding,  S::fallback,  S::tracking},
+    /* substituting */ {S::starting, S::stopping, S::tracking, S::substituting,   S::holding,  S::fallback,  S::substituting},
+    /* holding      */ {S::starting, S::stopping, S::tracking, S::substituting,   S::holding,  S::fallback,  S::holding},
+    /* fallback     */ {S::starting, S::stopping, S::tracking, S::substituting,   S::fallback, S::fallback,  S::fallback},
+    /* stopping     */ {S::starting, S::stopping, S::stopping, S::stopping,       S::stopping, S::stopping,  S::off},
+  };
+  // clang-format on
+  return table[static_cast<int>(state)][static_cast<int>(event)];
+}
+
+/// Whether the offset follows the model, rests where it is, or moves to zero in `state`.
+enum class OffsetTarget : std::uint8_t { demand, rest, zero };
+
+constexpr OffsetTarget offset_target(CompensatorState state) noexcept {
+  using S = CompensatorState;
+  if (state == S::tracking || state == S::substituting) return OffsetTarget::demand;
+  return state == S::starting || state == S::holding ? OffsetTarget::rest : OffsetTarget::zero;
+}
+
+}  // namespace thermfit

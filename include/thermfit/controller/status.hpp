@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+
+#include "thermfit/controller/state_machine.hpp"
+
+namespace thermfit {
+
+/// Why a sensor is not used.
+enum class SensorFault : std::uint8_t {
+  none,
+  not_finite,   ///< NaN or infinite
+  range,        ///< outside the readings that make sense for it
+  rate,         ///< changed faster than it can since it was last trusted
+  stuck,        ///< has not changed for long while the others moved
+  recovering,   ///< was lost, reads well again, not yet for long enough
+  no_reference  ///< was lost when the zero of the temperature rise was taken; needs a restart
+};
+
+/// The status of one step in one 32-bit word, the same for every target:
+///
+/// | bits  | meaning |
+/// |-------|---------|
+/// | 0–3   | CompensatorState |
+/// | 4     | the sample lies outside the training domain |
+/// | 5     | the demand was clamped |
+/// | 6     | the offset is on its way: slew limited |
+/// | 7     | the settings are faulty: start was refused |
+/// | 8–15  | number of the first sensor not used, counted from 1; 0 none |
+/// | 16–19 | SensorFault of that sensor |
+/// | 20–27 | how many sensors are not used |
+struct CompensatorStatus {
+  std::uint32_t word = 0;
+
+  static constexpr std::uint32_t outside_domain_bit = 1u << 4, clamped_bit = 1u << 5, slewing_bit = 1u << 6,
+                                 bad_settings_bit = 1u << 7;
+
+  constexpr CompensatorState state() const noexcept { return static_cast<CompensatorState>(word & 15u); }
+  constexpr bool outside_domain() const noexcept { return (word & outside_domain_bit) != 0; }
+  constexpr bool clamped() const noexcept { return (word & clamped_bit) != 0; }
+  constexpr bool slewing() const noexcept { return (word & slewing_bit) != 0; }
+  constexpr bool bad_settings() const noexcept { return (word & bad_settings_bit) != 0; }
+  constexpr int sensor() const noexcept { return static_cast<int>(word >> 8 & 255u); }
+  constexpr SensorFault fault() const noexcept { return static_cast<SensorFault>(word >> 16 & 15u); }
+  constexpr int unused_sensors() const noexcept { return static_cast<int>(word >> 20 & 255u); }
+
+  /// The part of the word that tells about sensors. Numbers above 255 read 255.
+  static constexpr std::uint32_t sensor_bits(std::uint32_t first, SensorFault fault, std::uint32_t count) noexcept {
+    return (first < 255u ? first : 255u) << 8 | static_cast<std::uint32_t>(fault) << 16 |
+           (count < 255u ? count : 255u) << 20;
+  }
+};
+
+}  // namespace thermfit

@@ -1,0 +1,293 @@
+#include "thermfit/controller/compensator.hpp"
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "controller/example_model.hpp"
+#include "embedded/random_walk.hpp"
+#include "support/catch.hpp"
+
+using namespace thermfit;
+using State = CompensatorState;
+
+namespace {
+
+const double nan_degC = std::nan("");
+
+struct Bench {
+  using Device = Compensator<double, 3, 2, 2>;
+  Device::Model model = narrow_model<double, 3, 2, 2>(example_model());
+  Device::Settings settings;
+  Device device{model, settings};
+
+  Bench() {
+    for (auto& sensor : settings.sensors) sensor = {0, 60, 2, 0};
+    settings.patience = {3, 4, 1};
+    settings.hold_steps = 5;
+    settings.outputs = {{{50, 1}, {20, 1}}};
+  }
+  CompensatorStatus step(double a, double b, double c, int times = 1) {
+    for (int i = 0; i < times; ++i) device.step({a, b, c});
+    return device.status();
+  }
+  double z() const { return device.offset_um()[1]; }
+  /// The correction the model asks for at this rise, all sensors well.
+  double wanted(double a, double b, double c) const {
+    return -model.equation.predict(1, std::array<double, 3>{a, b, c});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the offset becomes the negative predicted error of the rise since the first sample", "[controller]") {
+  Bench bench;
+  REQUIRE(bench.device.start());
+  CHECK(bench.step(21, 22, 23).state() == State::tracking);
+  CHECK(bench.z() == -1);  // the model's intercept, at rise 0
+  CHECK(bench.step(22, 23, 23, 10).word == static_cast<std::uint32_t>(State::tracking));
+  CHECK(bench.z() == bench.wanted(1, 1, 0));
+  bench.settings.sign = OutputSign::error;
+  bench.step(22, 23, 23, 20);
+  CHECK(bench.z() == -bench.wanted(1, 1, 0));
+}
+
+TEST_CASE("a model on absolute temperatures takes no zero", "[controller]") {
+  Bench bench;
+  bench.model.rise = false;
+  bench.settings.outputs = {{{1000, 1000}, {1000, 1000}}};
+  REQUIRE(bench.device.start());
+  bench.step(21, 22, 23);
+  CHECK(bench.z() == bench.wanted(21, 22, 23));
+}
+
+TEST_CASE("the offset is clamped and slewed, and the status says so", "[controller]") {
+  Bench bench;
+  bench.device.start();
+  bench.step(20, 20, 20, 5);
+  for (double a = 20; a < 34; a += 1) bench.step(a, 20, 20);
+  const CompensatorStatus far = bench.step(34, 20, 20, 40);
+  CHECK(bench.z() == -20);
+  CHECK(far.clamped());
+  CHECK_FALSE(far.slewing());
+  const double before = bench.z();
+  CHECK(bench.step(32, 20, 20).clamped());
+  bench.step(30, 20, 20), bench.step(28, 20, 20), bench.step(26, 20, 20);
+  CHECK(bench.step(24, 20, 20).slewing());
+  CHECK(bench.z() >= before);
+  CHECK(bench.z() <= before + 5);
+}
+
+TEST_CASE("a bad reading holds the offset, names the sensor and the reason, and is forgotten", "[controller]") {
+  const std::pair<double, SensorFault> bad[] = {{nan_degC, SensorFault::not_finite},
+                                                {-HUGE_VAL, SensorFault::not_finite},
+                                                {61, SensorFault::range},
+                                                {25, SensorFault::rate}};
+  for (const auto& [reading, fault] : bad) {
+    Bench bench;
+    bench.device.start();
+    bench.step(21, 20, 20, 20);
+    bench.step(22, 20, 20, 20);
+    const double before = bench.z();
+    const CompensatorStatus status = bench.step(22, reading, 20);
+    CHECK(status.state() == State::holding);
+    CHECK(status.sensor() == 2);
+    CHECK(status.fault() == fault);
+    CHECK(status.unused_sensors() == 1);
+    CHECK(bench.z() == before);
+    CHECK(bench.step(22, 20, 20).state() == State::tracking);
+    CHECK(bench.z() == before);
+  }
+}
+
+TEST_CASE("the substitute takes over for a lost sensor and hands back when it recovered", "[controller]") {
+  Bench bench;
+  bench.device.start();
+  bench.step(20, 20, 20);
+  bench.step(21, 22, 20, 20);
+  bench.step(nan_degC, 22, 20, 2);
+  CHECK(bench.device.state() == State::holding);
+  CHECK(bench.step(nan_degC, 22, 20, 20).state() == State::substituting);
+  CHECK(bench.z() == -bench.model.substitutes[0].predict(1, std::array<double, 3>{0, 2, 0}));
+  CHECK(bench.step(21, 22, 20, 3).fault() == SensorFault::recovering);
+  CHECK(bench.device.state() == State::substituting);
+  CHECK(bench.step(21, 22, 20, 20).word == static_cast<std::uint32_t>(State::tracking));
+  CHECK(bench.z() == bench.wanted(1, 2, 0));
+}
+
+TEST_CASE("without a substitute, or with two sensors lost, it holds, then ramps to zero, then comes back",
+          "[controller]") {
+  for (const bool two : {false, true}) {
+    Bench bench;
+    bench.device.start();
+    bench.step(20, 20, 20);
+    bench.step(22, 22, 20, 20);
+    const double before = bench.z();
+    REQUIRE(before < -5);
+    const double first = two ? nan_degC : 22;
+    CHECK(bench.step(first, 22, nan_degC, 5).state() == State::holding);
+    CHECK(bench.z() == before);
+    CHECK(bench.step(first, 22, nan_degC).state() == State::fallback);
+    CHECK(bench.z() == before + 1);
+    CHECK(bench.step(first, 22, nan_degC, 100).unused_sensors() == (two ? 2 : 1));
+    CHECK(bench.z() == 0);
+    CHECK(bench.step(22, 22, 20, 4).state() == State::tracking);
+    CHECK(bench.step(22, 22, 20, 20).state() == State::tracking);
+    CHECK(bench.z() == before);
+  }
+}
+
+TEST_CASE("hold time-out 0 ramps at once", "[controller]") {
+  Bench bench;
+  bench.settings.hold_steps = 0;
+  bench.device.start();
+  bench.step(20, 20, 20, 9);
+  CHECK(bench.step(nan_degC, 20, 20).state() == State::fallback);
+}
+
+TEST_CASE("a start from another source's offset makes no bump and slews to the demand", "[controller]") {
+  Bench bench;
+  CHECK(bench.device.start({7, -12}));
+  bench.step(20, nan_degC, 20);
+  CHECK(bench.z() == -12);  // still starting: held
+  CHECK(bench.device.state() == State::starting);
+  bench.step(20, 20, 20);
+  CHECK(bench.z() == -11);
+  CHECK(bench.device.offset_um()[0] == 6);
+  CHECK(bench.device.start({nan_degC, -1000}));
+  CHECK(bench.device.offset_um()[0] == 0);
+  CHECK(bench.z() == -20);
+}
+
+TEST_CASE("a kept zero lets a warm machine go on where it was", "[controller]") {
+  Bench bench;
+  REQUIRE(bench.device.start({0, 0}, {18, 18, 19}));
+  bench.step(20, 20, 20, 40);
+  CHECK(bench.z() == bench.wanted(2, 2, 1));
+  CHECK(bench.device.zero_degC() == std::array<double, 3>{18, 18, 19});
+}
+
+TEST_CASE("a sensor lost when the zero was taken stays out until the next start", "[controller]") {
+  Bench bench;
+  bench.device.start();
+  CHECK(bench.step(nan_degC, 20, 20, 2).state() == State::starting);
+  CHECK(bench.step(nan_degC, 20, 20).state() == State::substituting);
+  const CompensatorStatus status = bench.step(20, 20, 20, 50);
+  CHECK(status.state() == State::substituting);
+  CHECK(status.sensor() == 1);
+  CHECK(status.fault() == SensorFault::no_reference);
+  bench.device.start();
+  CHECK(bench.step(20, 20, 20).state() == State::tracking);
+}
+
+TEST_CASE("a start that never sees readings falls back to zero and still takes its zero later", "[controller]") {
+  Bench bench;
+  bench.device.start({0, 3});
+  CHECK(bench.step(nan_degC, nan_degC, nan_degC, 50).state() == State::fallback);
+  CHECK(bench.z() == 0);
+  bench.step(30, 30, 30, 4);
+  CHECK(bench.step(30, 30, 30).state() == State::tracking);
+  CHECK(bench.z() == -1);
+}
+
+TEST_CASE("outside the training domain the policy decides: warn, shrink, hold or ignore", "[controller]") {
+  const std::array<double, 3> rise{21, 5, 2};  // z = (5, 0, 0): T2 = 12.5 over its limit 9.5
+  for (const DomainPolicy policy :
+       {DomainPolicy::ignore, DomainPolicy::warn, DomainPolicy::shrink, DomainPolicy::hold}) {
+    Bench bench;
+    bench.settings.domain_policy = policy;
+    bench.settings.outputs = {{{1000, 1000}, {1000, 1000}}};
+    for (auto& sensor : bench.settings.sensors) sensor.largest_step_K = 100;
+    bench.device.start({0, 0}, {20, 20, 20});
+    bench.step(26, 25, 22);
+    CHECK(bench.device.status().word == static_cast<std::uint32_t>(State::tracking));
+    const double before = bench.z();
+    const CompensatorStatus status = bench.step(20 + rise[0], 20 + rise[1], 20 + rise[2]);
+    CHECK(status.outside_domain() == (policy != DomainPolicy::ignore));
+    CHECK(status.state() == (policy == DomainPolicy::hold ? State::holding : State::tracking));
+    const double full = bench.wanted(rise[0], rise[1], rise[2]);
+    if (policy == DomainPolicy::ignore || policy == DomainPolicy::warn) CHECK(bench.z() == full);
+    if (policy == DomainPolicy::hold) CHECK(bench.z() == before);
+    if (policy != DomainPolicy::shrink) continue;
+    const double edge = 6 + 15 * std::sqrt(9.5 / 12.5);  // the sample on the way to the mean where T2 = 9.5
+    CHECK(bench.z() == Approx(bench.wanted(edge, 5, 2)));
+  }
+}
+
+TEST_CASE("stop ramps to zero and switches off; off does nothing", "[controller]") {
+  Bench bench;
+  CHECK(bench.step(20, 20, 20).word == 0);
+  bench.device.start();
+  bench.step(20, 20, 20);
+  bench.step(22, 22, 20, 20);
+  bench.device.stop();
+  CHECK(bench.step(22, 22, 20).state() == State::stopping);
+  CHECK(bench.step(22, 22, 20, 30).state() == State::off);
+  CHECK(bench.z() == 0);
+}
+
+TEST_CASE("faulty settings are never started and show in the status", "[controller]") {
+  Bench bench;
+  bench.settings.outputs[1].slew_um_per_step = nan_degC;
+  CHECK_FALSE(bench.device.start());
+  CHECK_FALSE(bench.device.start({1, 1}));
+  CHECK(bench.step(20, 20, 20).bad_settings());
+  CHECK(bench.device.offset_um() == std::array<double, 2>{0, 0});
+}
+
+TEMPLATE_TEST_CASE("ten million random steps: always finite, in the clamp, within the slew", "[controller]", float,
+                   double) {
+  using Scalar = TestType;
+  CompensationWishes wishes;
+  wishes.clamp_um = 14;
+  wishes.slew_um_per_s = .7;
+  wishes.hold_s = 15;
+  wishes.stuck_factor = .1;
+  wishes.others_moved_K = .2;
+  wishes.domain_policy = DomainPolicy::shrink;
+  const auto model = narrow_model<Scalar, 3, 2, 2>(example_model());
+  const auto settings = settings_for<Scalar, 3, 2>(example_model(), wishes);
+  Compensator<Scalar, 3, 2, 2> device(model, settings);
+  struct Subject {
+    Compensator<Scalar, 3, 2, 2>& device;
+    std::array<Scalar, 2> before{};
+    State state_before = State::off;
+    void remember() { before = device.offset_um(), state_before = device.state(); }
+    void start() { device.start(); }
+    void start(const std::array<Scalar, 2>& offsets) { device.start(offsets); }
+    void start(const std::array<Scalar, 2>& offsets, const std::array<Scalar, 3>& zero) { device.start(offsets, zero); }
+    void stop() { device.stop(); }
+    void step(const std::array<Scalar, 3>& readings) {
+      remember();
+      device.step(readings);
+    }
+  } subject{device};
+  std::set<std::pair<State, State>> seen;
+  std::set<SensorFault> faults;
+  long violations = 0, flags = 0;
+  random_walk::run<Scalar, 3, 2>(subject, 10000000, [&] {
+    for (std::size_t j = 0; j < 2; ++j) {
+      const Scalar now = device.offset_um()[j], before = subject.before[j];
+      const Scalar rounding = std::numeric_limits<Scalar>::epsilon() * 14;
+      if (!(now >= -14 && now <= 14)) ++violations;
+      if (!(std::abs(now - before) <= settings.outputs[j].slew_um_per_step + rounding)) ++violations;
+    }
+    seen.emplace(subject.state_before, device.state());
+    faults.insert(device.status().fault());
+    flags |= static_cast<long>(device.status().word & 0x70u);
+  });
+  CHECK(violations == 0);
+  CHECK(faults.size() == 7);  // every kind of fault came up
+  CHECK(flags == 0x70);       // out of the domain, clamped and slewing as well
+  // Within a step the middle events and at_zero act: every transition they allow must have been seen, and no other.
+  std::set<std::pair<State, State>> allowed;
+  for (int s = 0; s < compensator_states; ++s)
+    for (const auto event : {CompensatorEvent::demand, CompensatorEvent::substitute_demand, CompensatorEvent::no_demand,
+                             CompensatorEvent::hold_expired})
+      allowed.emplace(static_cast<State>(s), next_state(static_cast<State>(s), event));
+  allowed.emplace(State::stopping, State::off);
+  allowed.erase({State::tracking, State::fallback});      // only with a hold time-out of 0 (tested above)
+  allowed.erase({State::substituting, State::fallback});  // the same
+  allowed.erase({State::tracking, State::substituting});  // only where a sensor is lost after one bad reading
+  CHECK(seen == allowed);
+}
