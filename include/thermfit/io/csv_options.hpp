@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace thermfit {
+
+/// What to do with an empty cell, `NA`, `N/A`, `NaN` or `null` (any case) in a column that is used.
+enum class MissingValues {
+  error,  ///< say how many there are and where the first is
+  drop,   ///< leave the row out
+  hold,   ///< repeat the last value of the column in its batch
+  keep    ///< NaN in the batch: for tools that look for faults
+};
+
+/// How to read a CSV file. The defaults read what formats.md describes; each member overrides one guess.
+/// A name may be a glob of `*` and `?`; a name that is spelled exactly as a column wins over the glob.
+struct CsvOptions {
+  char separator = 0;                              ///< `,` `;` tab or `|`; 0: from the file
+  char decimal_mark = 0;                           ///< `.` or `,`; 0: from the file
+  std::vector<std::string> columns;                ///< names for a file that has no header line
+  std::string time_column;                         ///< empty: by name or ISO 8601 content; "none": no time
+  std::string time_unit;                           ///< for a time column that does not name its unit; empty: min
+  std::vector<std::string> temperatures;           ///< empty: `T` and digits
+  std::vector<std::string> errors;                 ///< empty: those of `X`, `Y`, `Z` that there are
+  std::optional<std::vector<std::string>> inputs;  ///< absent: every other column of numbers
+  std::string batch_column;                        ///< splits a file into batches by its value; empty: one batch
+  MissingValues missing = MissingValues::error;
+  bool increasing_time = true;  ///< false: time that repeats or goes back is left to the caller
+  bool plain = false;           ///< every column of numbers is an input, whatever its name: for read_table
+  std::size_t max_errors = 20;  ///< problems told of in one pass
+  std::size_t max_line_bytes = std::size_t{1} << 20;  ///< limits against files that are not what they seem
+  std::size_t max_columns = 16384;
+};
+
+}  // namespace thermfit

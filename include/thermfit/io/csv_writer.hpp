@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/io/number.hpp"
+
+namespace thermfit {
+
+namespace detail {
+
+/// A name as a CSV field: in quotes where it needs them.
+inline std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",;\t\"") == std::string::npos && text.rfind('#', 0) != 0 && !text.empty() &&
+      text.front() != ' ' && text.back() != ' ')
+    return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+}  // namespace detail
+
+/// A batch as CSV that read_campaign reads back: `time_s`, temperatures, errors, inputs. With `decimals` below 0 every
+/// number is the shortest text that gives the same double again; missing values are empty.
+inline std::string write_csv(const Batch& batch, int decimals = -1) {
+  std::string text;
+  const char* separator = "";
+  const auto field = [&](const std::string& one) {
+    text += separator + one;
+    separator = ",";
+  };
+  const auto number = [&](double value) {
+    field(!(value == value) ? std::string() : decimals < 0 ? exact_text(value) : fixed_text(value, decimals));
+  };
+  if (batch.has_time()) field("time_s");
+  const Channels* const groups[] = {&batch.temperatures, &batch.errors, &batch.inputs};
+  for (const Channels* group : groups)
+    for (const std::string& name : group->names) field(detail::csv_field(name));
+  text += '\n';
+  for (Index row = 0; row < batch.rows(); ++row) {
+    separator = "";
+    if (batch.has_time()) field(exact_text(batch.time_s(row)));
+    for (const Channels* group : groups)
+      for (Index c = 0; c < group->count(); ++c) number(group->values(row, c));
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,184 @@
+#include "cli/campaign_options.hpp"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "thermfit/io/nearest.hpp"
+#include "thermfit/io/units.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// K2 before K10: runs of digits compare as numbers, everything else as bytes.
+bool natural_less(const std::string& a, const std::string& b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const auto number = [&](const std::string& text, std::size_t& at) {
+        std::size_t begin = at;
+        while (at < text.size() && is_digit(text[at])) ++at;
+        while (begin + 1 < at && text[begin] == '0') ++begin;
+        return text.substr(begin, at - begin);
+      };
+      const std::string x = number(a, i), y = number(b, j);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    } else if (a[i] != b[j]) {
+      return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+    } else {
+      ++i, ++j;
+    }
+  }
+  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
+bool is_csv_name(const std::string& name) {
+  const auto ends = [&](const std::string& suffix) {
+    return name.size() > suffix.size() && name.compare(name.size() - suffix.size(), std::string::npos, suffix) == 0;
+  };
+  return name.front() != '.' && (ends(".csv") || ends(".csv.gz") || ends(".CSV"));
+}
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_csv_name(entry->path().filename().string()) && !entry->is_directory(error))
+      files.push_back(entry->path().string());
+  if (error) throw Error(folder, error.message(), "a folder that can be read");
+  if (files.empty()) throw Error(folder, "holds no *.csv or *.csv.gz", "a folder with batches");
+  std::sort(files.begin(), files.end(), natural_less);
+  return files;
+}
+
+std::vector<std::string> files_like(const std::string& pattern) {
+  glob_t found{};
+  const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
+  std::vector<std::string> files;
+  for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) files.emplace_back(found.gl_pathv[i]);
+  ::globfree(&found);
+  if (files.empty()) throw Error(pattern, "no file is like this", "files, folders, quoted globs, or - for stdin");
+  std::sort(files.begin(), files.end(), natural_less);
+  return files;
+}
+
+char separator(const Arguments& arguments) {
+  const std::string text =
+      arguments.choice("--delimiter", {"auto", "comma", "semicolon", "tab", "bar", ",", ";", "\t", "\\t", "|"}, "auto");
+  if (text == "auto") return 0;
+  if (text == "tab" || text == "\\t") return '\t';
+  return text == "comma" ? ',' : text == "semicolon" ? ';' : text == "bar" ? '|' : text.front();
+}
+
+char decimal_mark(const Arguments& arguments) {
+  const std::string text = arguments.choice("--decimal", {"auto", "point", "comma", ".", ","}, "auto");
+  return text == "auto" ? '\0' : text == "point" ? '.' : text == "comma" ? ',' : text.front();
+}
+
+}  // namespace
+
+std::vector<Option> campaign_options() {
+  return {
+      {"--temperatures", "NAME,…", "temperature points; a name may be a glob such as 'PT*' (default: T1, T2, …)", 0,
+       true},
+      {"--errors", "NAME,…", "thermal errors (default: those of X, Y, Z that there are)", 0, true},
+      {"--inputs", "NAME,…", "known inputs (default: every other column of numbers); 'none' reads no inputs", 0, true},
+      {"--time-column", "NAME",
+       "the clock, or 'none' (default: time_s, time_min, time_h, Time, time, t, or the column "
+       "of ISO 8601 date-times)",
+       0, false},
+      {"--time-unit", "UNIT", "unit of a clock that names none: us, ms, s, min, h, d (default: min)", 0, false},
+      {"--batch-column", "NAME", "split each file into batches by this column (default: a file is a batch)", 0, false},
+      {"--missing", "POLICY",
+       "missing values: error, drop (leave the row out), hold (repeat the last) (default: error)", 0, false},
+      {"--delimiter", "MARK", "comma, semicolon, tab or bar (default: from the file)", 0, false},
+      {"--decimal", "MARK", "point or comma (default: from the file)", 0, false},
+      {"--columns", "NAME,…", "names of the columns of files without a header line", 0, true},
+      {"--max-errors", "N", "problems told of before giving up (default: 20)", 0, false},
+  };
+}
+
+Option absolute_option() {
+  return {"--absolute", "", "use temperatures in degC (default: their rise since the first row of the batch)", 0,
+          false};
+}
+
+TemperatureReference temperature_reference(const Arguments& arguments) {
+  return arguments.has("--absolute") ? TemperatureReference::absolute : TemperatureReference::rise;
+}
+
+CsvOptions csv_options(const Arguments& arguments) {
+  CsvOptions options;
+  options.separator = separator(arguments);
+  options.decimal_mark = decimal_mark(arguments);
+  options.columns = arguments.list("--columns");
+  options.time_column = arguments.value_or("--time-column", "");
+  options.time_unit = arguments.value_or("--time-unit", "");
+  const auto unit = find_unit(options.time_unit);
+  if (!options.time_unit.empty() && (!unit || unit->quantity != Quantity::time))
+    throw UsageError("--time-unit is '" + options.time_unit + "'; allowed: " + std::string(unit_names(Quantity::time)));
+  options.temperatures = arguments.list("--temperatures");
+  options.errors = arguments.list("--errors");
+  if (arguments.has("--inputs")) {
+    options.inputs = arguments.list("--inputs");
+    if (*options.inputs == std::vector<std::string>{"none"}) options.inputs->clear();
+  }
+  options.batch_column = arguments.value_or("--batch-column", "");
+  const std::string missing = arguments.choice("--missing", {"error", "drop", "hold"}, "error");
+  options.missing = missing == "drop"   ? MissingValues::drop
+                    : missing == "hold" ? MissingValues::hold
+                                        : MissingValues::error;
+  options.max_errors = static_cast<std::size_t>(arguments.integer("--max-errors", 1, 1000000).value_or(20));
+  return options;
+}
+
+std::vector<std::string> find_files(const std::vector<std::string>& paths) {
+  std::vector<std::string> files;
+  const auto append = [&](const std::vector<std::string>& more) {
+    files.insert(files.end(), more.begin(), more.end());
+  };
+  for (const std::string& path : paths) {
+    std::error_code ignored;
+    if (path == "-" || (fs::exists(path, ignored) && !fs::is_directory(path, ignored)))
+      files.push_back(path);
+    else if (fs::is_directory(path, ignored))
+      append(files_in(path));
+    else if (path.find_first_of("*?[") != std::string::npos)
+      append(files_like(path));
+    else
+      throw Error(path, "no such file or folder", "files, folders, quoted globs, or - for stdin");
+  }
+  return files;
+}
+
+CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths) {
+  if (paths.empty()) throw UsageError("no batch is named; give files, folders, quoted globs, or - for stdin");
+  CsvReading reading = thermfit::read_campaign(find_files(paths), options);
+  for (const std::string& note : reading.notes(options)) console.note(note);
+  return reading;
+}
+
+Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths) {
+  return read_files(csv_options(arguments), console, paths).batches;
+}
+
+void require_errors(const Campaign& campaign) {
+  for (const Batch& batch : campaign)
+    if (batch.errors.count() == 0)
+      throw Error(batch.source, "no thermal error", "X, Y, Z or the names given by --errors",
+                  "other columns: " + name_list(batch.inputs.names));
+}
+
+void require_time(const Campaign& campaign) {
+  for (const Batch& batch : campaign)
+    if (!batch.has_time())
+      throw Error(batch.source, "no clock", "time_s, time_min, time_h, Time, or a column of ISO 8601 date-times",
+                  "name it: --time-column NAME --time-unit UNIT");
+}
+
+}  // namespace thermfit::cli

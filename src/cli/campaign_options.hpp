@@ -1,0 +1,39 @@
+#pragma once
+
+/// The options by which every command reads batches, and the reading itself.
+
+#include <string>
+#include <vector>
+
+#include "cli/arguments.hpp"
+#include "cli/console.hpp"
+#include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/io/csv_reader.hpp"
+
+namespace thermfit::cli {
+
+/// Roles of columns, dialect, missing values: to be appended to a command's own options.
+std::vector<Option> campaign_options();
+
+/// `--absolute`, for commands that fit or compare temperatures; temperature_reference() reads it.
+Option absolute_option();
+TemperatureReference temperature_reference(const Arguments& arguments);
+
+/// What the options say about CSV files. Throws UsageError on a value that is not allowed.
+CsvOptions csv_options(const Arguments& arguments);
+
+/// Files, folders (their *.csv and *.csv.gz), quoted globs and `-` as a list of files; folders and globs in order of
+/// name, digits compared as numbers. Throws Error when one of them is not there or holds nothing.
+std::vector<std::string> find_files(const std::vector<std::string>& paths);
+
+/// Reads the batches of all `paths` and says on stderr what was not plain about them. Throws UsageError without paths.
+CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths);
+Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths);
+
+/// Throws Error, with the columns there are, when batches have no thermal error to be fitted or compared.
+void require_errors(const Campaign& campaign);
+
+/// Throws Error when a batch has no clock, as simulation needs.
+void require_time(const Campaign& campaign);
+
+}  // namespace thermfit::cli
