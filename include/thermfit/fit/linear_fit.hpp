@@ -1,0 +1,31 @@
+#pragma once
+
+#include "thermfit/fit/residuals.hpp"
+#include "thermfit/fit/standardise.hpp"
+#include "thermfit/model/latent_variables.hpp"
+#include "thermfit/model/linear_model.hpp"
+
+namespace thermfit {
+
+/// What every fit returns: the model in um and K, and how it came about.
+struct LinearFit {
+  LinearModel<> model;
+  Matrix standardised_coefficients;  ///< points x responses
+  Standardisation channels;
+  Index rows = 0;
+  Index rank = 0;                 ///< independent directions among the temperatures
+  double condition_number = 1;    ///< largest over smallest singular value of the standardised temperatures, among
+                                  ///< the `rank` independent directions
+  Index components = 0;           ///< latent variables used; 0 for MLR and ridge
+  double ridge_lambda = 0;        ///< penalty used; 0 for the others
+  LatentVariables latent;         ///< PLS and PCR
+  double degrees_of_freedom = 0;  ///< rows - 1 - parameters (MLR: rank; PLS, PCR: components; ridge: trace of the hat)
+  Vector residual_deviation_um;   ///< S of eq. (10) per error, on the rows of the fit
+};
+
+/// Scores (latent variables) of rows: rows x points to rows x components, standardised units.
+inline Matrix scores(const LinearFit& fit, const Matrix& temperatures) {
+  return fit.channels.apply(temperatures) * fit.latent.rotations;
+}
+
+}  // namespace thermfit

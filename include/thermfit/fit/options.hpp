@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// What is done to the channels before a fit, besides centring them. Scales are standard deviations, divisor n - 1.
+enum class Scaling {
+  centre,        ///< nothing more
+  temperatures,  ///< temperatures to unit deviation (the convention of R)
+  both           ///< temperatures and errors to unit deviation (the paper's, and scikit-learn's)
+};
+
+/// When to stop taking latent variables.
+struct ComponentRule {
+  enum class Kind { explained, fixed, leave_one_batch_out };
+  Kind kind = Kind::explained;
+  Index count = 0;          ///< fixed: how many; leave_one_batch_out: at most how many, 0 for no bound
+  double enough = .90;      ///< explained: share of temperature variance beyond which to stop
+  double least_gain = .05;  ///< explained: gain of one more below which it is not taken
+  static ComponentRule paper() { return {}; }
+  static ComponentRule fixed(Index count) { return {Kind::fixed, count}; }
+  static ComponentRule leave_one_batch_out(Index at_most = 0) { return {Kind::leave_one_batch_out, at_most}; }
+};
+
+/// Settings of a fit; every method reads those that concern it.
+struct FitOptions {
+  Scaling scaling = Scaling::both;
+  ComponentRule components = ComponentRule::paper();  ///< PLS and PCR
+  std::optional<double> ridge_lambda;                 ///< ridge; none: chosen by leaving one batch out
+};
+
+}  // namespace thermfit

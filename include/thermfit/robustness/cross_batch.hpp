@@ -1,0 +1,111 @@
+#pragma once
+
+#include <type_traits>
+#include <vector>
+
+#include "thermfit/fit/linear_fit.hpp"
+#include "thermfit/robustness/robustness.hpp"
+#include "thermfit/select/rule.hpp"
+
+namespace thermfit {
+
+/// A fitter is anything called as `fitter(const Moments&)` that returns a LinearFit or a LinearModel<>.
+template <class Fitter>
+inline constexpr bool is_fitter = std::is_invocable_r_v<LinearFit, const Fitter&, const Moments&> ||
+                                  std::is_invocable_r_v<LinearModel<>, const Fitter&, const Moments&>;
+
+/// The model of one batch (or of several) and the temperature points it reads, in coefficient order.
+struct BatchModel {
+  std::vector<Index> points;
+  LinearFit fit;
+};
+
+namespace detail {
+
+inline LinearFit as_fit(LinearFit fit) { return fit; }
+inline LinearFit as_fit(LinearModel<> model) {
+  LinearFit fit;
+  fit.model = std::move(model);
+  return fit;
+}
+
+/// An Error that tells which batch it came from.
+template <class Work>
+auto in_batch(const std::string& name, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string batch = name.empty() ? "batch" : "batch " + name;
+    throw Error(batch + ": " + error.place(), error.found(), error.allowed(), error.remedy());
+  }
+}
+
+}  // namespace detail
+
+/// One model per batch: `rule` names `count` points (select/rule.hpp), `fitter` fits the batch's moments on them.
+/// Errors of either name the batch.
+template <class Rule, class Fitter>
+std::vector<BatchModel> batch_models(const std::vector<Observations>& batches, const Rule& rule, Index count,
+                                     const Fitter& fitter) {
+  static_assert(is_fitter<Fitter>,
+                "A fitter is called as fitter(const thermfit::Moments&) and returns thermfit::LinearFit or "
+                "thermfit::LinearModel<>.");
+  std::vector<BatchModel> models;
+  for (const Observations& batch : batches) {
+    models.push_back(detail::in_batch(batch.name, [&] {
+      std::vector<Index> points = select_points(rule, batch, count);
+      LinearFit fit = detail::as_fit(fitter(batch.moments.subset(points)));
+      return BatchModel{std::move(points), std::move(fit)};
+    }));
+  }
+  return models;
+}
+
+/// S of eq. (10) of every model on every batch, um: one models x batches matrix per error. Quadratic forms of the
+/// moments, no rows.
+inline std::vector<Matrix> cross_batch_S(const std::vector<BatchModel>& models,
+                                         const std::vector<Observations>& batches) {
+  if (models.empty() || batches.empty()) return {};
+  const Index count = static_cast<Index>(models.size());
+  std::vector<Matrix> result(static_cast<std::size_t>(batches.front().moments.errors()),
+                             Matrix(count, static_cast<Index>(batches.size())));
+  for (Index m = 0; m < count; ++m) {
+    const BatchModel& model = models[static_cast<std::size_t>(m)];
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+      const auto per_error = residuals(model.fit.model, batches[b].moments.subset(model.points));
+      for (std::size_t e = 0; e < result.size(); ++e) result[e](m, static_cast<Index>(b)) = per_error[e].S();
+    }
+  }
+  return result;
+}
+
+/// What a number of points gives: models, matrices of S and their summary per error.
+struct SweepStep {
+  Index points = 0;
+  std::vector<BatchModel> models;
+  std::vector<Matrix> S;
+  std::vector<Robustness> robustness;  ///< per error
+};
+
+/// Step 4 of the paper: models of every batch with `points` points, each on every other batch.
+template <class Rule, class Fitter>
+SweepStep cross_batch(const std::vector<Observations>& batches, const Rule& rule, Index points, const Fitter& fitter,
+                      bool own_batch = false) {
+  SweepStep step{points, batch_models(batches, rule, points, fitter), {}, {}};
+  step.S = cross_batch_S(step.models, batches);
+  for (const Matrix& S : step.S) step.robustness.push_back(robustness(S, own_batch));
+  return step;
+}
+
+/// cross_batch for 1, 2, … `most` points (0: all there are).
+template <class Rule, class Fitter>
+std::vector<SweepStep> sweep_points(const std::vector<Observations>& batches, const Rule& rule, const Fitter& fitter,
+                                    Index most = 0, bool own_batch = false) {
+  std::vector<SweepStep> steps;
+  if (batches.empty()) return steps;
+  if (most == 0) most = batches.front().moments.temperatures();
+  for (Index k = 1; k <= most; ++k) steps.push_back(cross_batch(batches, rule, k, fitter, own_batch));
+  return steps;
+}
+
+}  // namespace thermfit
