@@ -33,13 +33,17 @@ inline double sign_of_largest(const Vector& weights) {
   return 1;
 }
 
-inline Matrix coefficients(const LatentVariables& latent, Index components) {
+struct ScoredLatentVariables : LatentVariables {
+  Vector score_variance;  // per component, divisor rows - 1
+};
+
+inline Matrix coefficients(const ScoredLatentVariables& latent, Index components) {
   return latent.rotations.leftCols(components) * latent.error_loadings.leftCols(components).transpose();
 }
 
 /// Variable importance in projection (Wold, Johansson, Cocchi 1993): per point
 /// `sqrt(points sum_a SS_a (w_a / |w_a|)^2 / sum_a SS_a)`, SS_a the error variance component a explains.
-inline Vector vip(const LatentVariables& latent) {
+inline Vector vip(const ScoredLatentVariables& latent) {
   const Vector explained =
       latent.score_variance.cwiseProduct(latent.error_loadings.colwise().squaredNorm().transpose());
   if (!(explained.sum() > 0)) return Vector::Zero(latent.weights.rows());
@@ -48,7 +52,7 @@ inline Vector vip(const LatentVariables& latent) {
 }
 
 /// Cumulative explained shares from score variances and loadings, then VIP.
-inline void complete(LatentVariables& latent, double temperature_variance, double error_variance) {
+inline void complete(ScoredLatentVariables& latent, double temperature_variance, double error_variance) {
   const Index components = latent.score_variance.size();
   latent.explained_temperature_variance.resize(components);
   latent.explained_error_variance.resize(components);
@@ -72,10 +76,11 @@ LinearFit fit_latent(const Standardised& data, const ComponentRule& rule, Extrac
   if (rule.kind == ComponentRule::Kind::fixed && rule.count < 1) {
     throw Error("components", std::to_string(rule.count), "1 or more");
   }
-  LatentVariables latent = extract(data, rule);
+  ScoredLatentVariables latent = extract(data, rule);
   const Index components = latent.score_variance.size();
   LinearFit fit = linear_fit(data, coefficients(latent, components), spectrum(data), static_cast<double>(components));
   fit.components = components;
+  fit.score_variance = std::move(latent.score_variance);
   fit.latent = std::move(latent);
   return fit;
 }
@@ -84,7 +89,7 @@ LinearFit fit_latent(const Standardised& data, const ComponentRule& rule, Extrac
 template <class Extract>
 std::vector<LinearModel<>> latent_path(const Moments& moments, const FitOptions& options, Extract&& extract) {
   const StandardisedMoments data(moments, options.scaling);
-  const LatentVariables latent = extract(data, ComponentRule::leave_one_batch_out(options.components.count));
+  const ScoredLatentVariables latent = extract(data, ComponentRule::leave_one_batch_out(options.components.count));
   std::vector<LinearModel<>> models;
   for (Index a = 1; a <= latent.score_variance.size(); ++a) {
     models.push_back(data.channels.undo(coefficients(latent, a)));

@@ -19,6 +19,7 @@ struct LinearFit {
   Index components = 0;           ///< latent variables used; 0 for MLR and ridge
   double ridge_lambda = 0;        ///< penalty used; 0 for the others
   LatentVariables latent;         ///< PLS and PCR
+  Vector score_variance;          ///< of each latent variable, standardised units, divisor rows - 1
   double degrees_of_freedom = 0;  ///< rows - 1 - parameters (MLR: rank; PLS, PCR: components; ridge: trace of the hat)
   Vector residual_deviation_um;   ///< S of eq. (10) per error, on the rows of the fit
 };

@@ -8,7 +8,7 @@ namespace detail {
 
 struct ExtractPcr {
   template <class Standardised>
-  LatentVariables operator()(const Standardised& data, const ComponentRule& rule) const {
+  ScoredLatentVariables operator()(const Standardised& data, const ComponentRule& rule) const {
     const Spectrum temperatures = spectrum(data);
     const double total = temperatures.variance.sum();
     const Stop stop{rule};
@@ -21,7 +21,7 @@ struct ExtractPcr {
       if (stop.refuses()) temperatures.require_resolved(taken);
       explained(taken) = gain + (taken > 0 ? explained(taken - 1) : 0);
     }
-    LatentVariables found;
+    ScoredLatentVariables found;
     Vector sign(taken);
     for (Index a = 0; a < taken; ++a) sign(a) = sign_of_largest(temperatures.directions.col(a));
     found.weights = temperatures.directions.leftCols(taken) * sign.asDiagonal();

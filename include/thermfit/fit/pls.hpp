@@ -45,14 +45,14 @@ struct PlsOnRows {
 
 /// Latent variables until the rule, or the rank of the data, says stop.
 template <class State>
-LatentVariables extract_pls(State state, const ComponentRule& rule) {
+ScoredLatentVariables extract_pls(State state, const ComponentRule& rule) {
   const Index points = state.covariance().rows(), responses = state.covariance().cols();
   const double tolerance = rank_tolerance(points);
   const double least_variance = (State::squared ? tolerance : tolerance * tolerance) * state.total;
   const double least_covariance = tolerance * state.covariance().norm();
   const Stop stop{rule};
   const Index most = stop.most(points);
-  LatentVariables found;
+  ScoredLatentVariables found;
   found.weights = found.loadings = found.rotations = Matrix(points, most);
   found.error_loadings = Matrix(responses, most);
   found.score_variance = Vector(most);
@@ -98,10 +98,10 @@ LatentVariables extract_pls(State state, const ComponentRule& rule) {
 }
 
 struct ExtractPls {
-  LatentVariables operator()(const StandardisedMoments& data, const ComponentRule& rule) const {
+  ScoredLatentVariables operator()(const StandardisedMoments& data, const ComponentRule& rule) const {
     return extract_pls(PlsOnMoments(data), rule);
   }
-  LatentVariables operator()(const StandardisedRows& data, const ComponentRule& rule) const {
+  ScoredLatentVariables operator()(const StandardisedRows& data, const ComponentRule& rule) const {
     return extract_pls(PlsOnRows(data), rule);
   }
 };

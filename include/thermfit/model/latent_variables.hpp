@@ -8,7 +8,6 @@ namespace thermfit {
 struct LatentVariables {
   Matrix weights, loadings, rotations;                              ///< sensors x components
   Matrix error_loadings;                                            ///< errors x components
-  Vector score_variance;                                            ///< per component, divisor rows - 1
   Vector explained_temperature_variance, explained_error_variance;  ///< cumulative share per component, 0…1
   Vector vip;                                                       ///< per sensor
 };

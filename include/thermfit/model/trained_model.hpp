@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/model/latent_variables.hpp"
 #include "thermfit/model/linear_model.hpp"
 #include "thermfit/model/sensor_envelope.hpp"
 #include "thermfit/model/training_domain.hpp"
@@ -22,14 +23,6 @@ struct SubstituteModel {
   Index lost = 0;                ///< index into TrainedModel::temperatures
   LinearModel<> model;           ///< on all sensors in their order, coefficient of the lost one zero
   Vector residual_deviation_um;  ///< per error, on the training rows
-};
-
-/// The latent variables behind a PLS or PCR model, in standardised units; empty for MLR and ridge.
-struct LatentVariables {
-  Matrix weights, loadings, rotations;                              ///< sensors x components
-  Matrix error_loadings;                                            ///< errors x components
-  Vector explained_temperature_variance, explained_error_variance;  ///< cumulative share per component, 0…1
-  Vector vip;                                                       ///< per sensor
 };
 
 /// A linear model with everything a predictor needs and where it came from: the in-memory `thermfit-model/1`.

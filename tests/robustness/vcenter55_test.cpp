@@ -1,0 +1,42 @@
+#include "support/catch.hpp"
+#include "support/numeric_csv.hpp"
+#include "thermfit/fit/fit.hpp"
+#include "thermfit/number.hpp"
+#include "thermfit/robustness/cross_batch.hpp"
+#include "thermfit/select/correlation.hpp"
+
+using namespace thermfit;
+
+namespace {
+
+std::vector<Observations> vcenter55() {
+  std::vector<Observations> batches;
+  for (int b = 1; b <= 12; ++b) {
+    const std::string name = (b < 10 ? "K0" : "K") + std::to_string(b);
+    const NumericCsv csv(std::string(THERMFIT_SOURCE_DIR) + "/data/vcenter55/" + name + ".csv");
+    Batch batch;
+    batch.name = name;
+    batch.temperatures = {{"T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10"}, csv.columns("T1", "T10")};
+    batch.errors = {{"Z"}, csv.columns("Z", "Z")};
+    batches.push_back(observe(batch));
+  }
+  return batches;
+}
+
+}  // namespace
+
+TEST_CASE("the sweep over points of vcenter55 gives the reference row to the printed digits", "[robustness]") {
+  const std::vector<Observations> batches = vcenter55();
+  FitOptions options;
+  options.components = ComponentRule::fixed(1);
+  const auto steps = sweep_points(batches, ByCorrelation{}, [&](const Moments& m) { return fit_pls(m, options); });
+  const std::vector<std::string> mean{"6.38", "5.72", "5.85", "5.99", "5.98", "6.70", "7.13", "7.53", "7.53", "8.40"};
+  const std::vector<std::string> deviation{"1.01", "0.61", "0.83", "0.81", "0.80",
+                                           "0.95", "0.97", "2.09", "1.23", "2.03"};
+  REQUIRE(steps.size() == 10);
+  for (std::size_t k = 0; k < 10; ++k) {
+    CAPTURE(k + 1);
+    CHECK(fixed_text(steps[k].robustness[0].per_model.S_mean, 2) == mean[k]);
+    CHECK(fixed_text(steps[k].robustness[0].per_model.S_std, 2) == deviation[k]);
+  }
+}
