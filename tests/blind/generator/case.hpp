@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lumping.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 #include "unknown_effects.hpp"
 
 namespace blind {
