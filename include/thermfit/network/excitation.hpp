@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/error.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit {
@@ -16,15 +18,129 @@ struct Excitation {
   Matrix inputs;                         ///< samples x inputs, held until the next sample
   Vector ambient_degC;                   ///< at the samples, linear between them
   Vector measured_ambient_degC;          ///< reading of the ambient sensor; empty where there is none
-  Vector start_degC;                     ///< of every node
-  std::vector<Index> start_sensor;       ///< for each node, the sensor its start was read from, or -1
+  Vector start_degC;  ///< of every node, as read: the simulation takes the mean of the sensors' offsets off
+  std::vector<std::vector<Index>> start_sensors;  ///< for each node, the sensors its start was read from
 
   Index samples() const { return time_s.size(); }
+
+  Index find_input(const std::string& name) const {
+    for (std::size_t i = 0; i < input_names.size(); ++i)
+      if (input_names[i] == name) return static_cast<Index>(i);
+    return -1;
+  }
 };
+
+namespace detail {
+
+/// The column `name` of a batch, wherever it is; throws Error where it is absent or has a missing value in its first
+/// `rows` samples.
+inline Vector batch_column(const Batch& batch, const std::string& name, const std::string& purpose, Index rows) {
+  const std::string place = batch.source.empty() ? "batch " + batch.name : batch.source;
+  for (const Channels* channels : {&batch.temperatures, &batch.inputs, &batch.errors}) {
+    const Index j = channels->find(name);
+    if (j < 0) continue;
+    const Vector values = channels->values.col(j);
+    for (Index i = 0; i < rows; ++i)
+      if (!std::isfinite(values(i)))
+        throw Error(place, "column '" + name + "' has no value in sample " + std::to_string(i + 1),
+                    "complete values: it is " + purpose, "use --missing hold or --missing drop");
+    return values;
+  }
+  std::string known;
+  for (const Channels* channels : {&batch.inputs, &batch.temperatures})
+    for (const std::string& column : channels->names) known += (known.empty() ? "" : ", ") + column;
+  throw Error(place, "there is no column '" + name + "', which is " + purpose, known,
+              "name the column in the machine file as it is named in the data");
+}
+
+inline const ThermalNetwork::Sensor* ambient_sensor(const ThermalNetwork& network, const Batch& batch) {
+  for (const ThermalNetwork::Sensor& sensor : network.sensors)
+    if (sensor.node == ThermalNetwork::ambient_node && batch.temperatures.find(sensor.column) >= 0) return &sensor;
+  return nullptr;
+}
+
+inline Vector ambient_of(const ThermalNetwork& network, const Batch& batch) {
+  using Rule = ThermalNetwork::Ambient::Rule;
+  const ThermalNetwork::Ambient& ambient = network.ambient;
+  const Index rows = batch.rows();
+  if (ambient.rule == Rule::constant) return Vector::Constant(rows, ambient.value_degC);
+  if (ambient.rule == Rule::column)
+    return batch_column(batch, ambient.column, "the machine's ambient temperature", rows);
+  std::string column = ambient.column;
+  if (ambient.rule == Rule::initial) {
+    const ThermalNetwork::Sensor* sensor = ambient_sensor(network, batch);
+    if (!sensor)
+      throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
+                  "the ambient temperature is unknown: the machine's rule is \"initial\" and no sensor is mapped to "
+                  "ambient",
+                  "", "map a sensor to node \"ambient\", or give a column or a number as \"ambient\"");
+    column = sensor->column;
+  }
+  return Vector::Constant(rows, batch_column(batch, column, "the machine's first ambient temperature", 1)(0));
+}
+
+}  // namespace detail
 
 /// The excitation of a batch. Throws Error when the batch has no clock, fewer than two samples, lacks a column that the
 /// network needs, or has a missing value in one.
-Excitation excitation_of(const ThermalNetwork& network, const Batch& batch);
-std::vector<Excitation> excitations_of(const ThermalNetwork& network, const Campaign& campaign);
+inline Excitation excitation_of(const ThermalNetwork& network, const Batch& batch) {
+  const std::string place = batch.source.empty() ? "batch " + batch.name : batch.source;
+  if (!batch.has_time())
+    throw Error(place, "there is no time column", "time_s, time_min, time_h, time or a date-time",
+                "a simulation needs a clock");
+  if (batch.rows() < 2) throw Error(place, "one sample only", "at least two", "a simulation needs a duration");
+
+  Excitation result;
+  result.batch = batch.name;
+  result.time_s = batch.time_s.array() - batch.time_s(0);
+  for (Index i = 1; i < batch.rows(); ++i)
+    if (!(result.time_s(i) > result.time_s(i - 1)))
+      throw Error(place, "the clock does not advance at sample " + std::to_string(i + 1), "strictly increasing time");
+  result.input_names = batch.inputs.names;
+  result.inputs = batch.inputs.values;
+  for (const ThermalNetwork::HeatSource& source : network.heat_sources) {
+    if (source.input == "constant" || result.find_input(source.input) >= 0) continue;
+    // A heat source may follow any column; those that are not inputs (a measured temperature, say) are taken along.
+    const Vector values =
+        detail::batch_column(batch, source.input, "the input of heat source '" + source.name + "'", batch.rows());
+    result.input_names.push_back(source.input);
+    result.inputs.conservativeResize(batch.rows(), result.inputs.cols() + 1);
+    result.inputs.rightCols(1) = values;
+  }
+  for (const ThermalNetwork::HeatSource& source : network.heat_sources)
+    if (source.input != "constant")
+      detail::batch_column(batch, source.input, "the input of heat source '" + source.name + "'", batch.rows());
+
+  result.ambient_degC = detail::ambient_of(network, batch);
+  if (const ThermalNetwork::Sensor* sensor = detail::ambient_sensor(network, batch)) {
+    result.measured_ambient_degC = batch.temperatures.values.col(batch.temperatures.find(sensor->column));
+    if (!result.measured_ambient_degC.allFinite()) result.measured_ambient_degC.resize(0);
+  }
+
+  const Index nodes = network.node_count();
+  result.start_degC = Vector::Constant(nodes, result.ambient_degC(0));
+  result.start_sensors.resize(network.nodes.size());
+  if (network.initial.rule == ThermalNetwork::Initial::Rule::given)
+    for (const auto& [node, degC] : network.initial.degC) result.start_degC(node) = degC;
+  if (network.initial.rule == ThermalNetwork::Initial::Rule::measured) {
+    Vector sum = Vector::Zero(nodes);
+    for (std::size_t s = 0; s < network.sensors.size(); ++s) {
+      const ThermalNetwork::Sensor& sensor = network.sensors[s];
+      if (sensor.node < 0 || batch.temperatures.find(sensor.column) < 0) continue;
+      sum(sensor.node) += detail::batch_column(batch, sensor.column, "the start of a node", 1)(0);
+      result.start_sensors[static_cast<std::size_t>(sensor.node)].push_back(static_cast<Index>(s));
+    }
+    for (Index node = 0; node < nodes; ++node)
+      if (const auto count = result.start_sensors[static_cast<std::size_t>(node)].size(); count > 0)
+        result.start_degC(node) = sum(node) / static_cast<double>(count);
+  }
+  return result;
+}
+
+inline std::vector<Excitation> excitations_of(const ThermalNetwork& network, const Campaign& campaign) {
+  std::vector<Excitation> result;
+  for (const Batch& batch : campaign) result.push_back(excitation_of(network, batch));
+  return result;
+}
 
 }  // namespace thermfit

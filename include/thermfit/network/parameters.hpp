@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,22 +24,132 @@ struct Parameter {
   std::string unit;
   bool logarithmic = false;
   double mean = 0, sd = 1;
-  double lower = 0, upper = 0;
+  double lower = -std::numeric_limits<double>::infinity();  ///< of the value
+  double upper = std::numeric_limits<double>::infinity();
 
-  double value(double t) const;
-  double coordinate(double value) const;
+  double value(double t) const { return logarithmic ? mean * std::exp(sd * t) : mean + sd * t; }
+  double coordinate(double value) const { return logarithmic ? std::log(value / mean) / sd : (value - mean) / sd; }
   /// dvalue/dt at t.
-  double slope(double t) const;
+  double slope(double t) const { return logarithmic ? sd * value(t) : sd; }
 };
 
-/// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
-/// sensor offsets, then each effect's own. Numbers that are zero and cannot be negative stay zero and are left out, and
-/// so are offsets of ambient sensors.
-std::vector<Parameter> calibration_parameters(const ThermalNetwork& network, const EffectLibrary& effects);
+namespace detail {
 
-/// Value of a parameter in a network, and the network with other values (in the order of `parameters`).
-double value_in(const ThermalNetwork& network, const Parameter& parameter);
-ThermalNetwork with_values(ThermalNetwork network, const std::vector<Parameter>& parameters, const Vector& values);
-Vector values_of(const ThermalNetwork& network, const std::vector<Parameter>& parameters);
+/// Gives `take` a reference to the number itself, in any network of the same shape.
+template <class Network, class Take>
+void visit_value(Network& network, const Parameter& parameter, Take take) {
+  using Kind = Parameter::Kind;
+  switch (parameter.kind) {
+    case Kind::capacity:
+      return take(network.nodes[parameter.item].capacity_J_per_K);
+    case Kind::ambient:
+      return take(network.nodes[parameter.item].ambient_W_per_K);
+    case Kind::conductance:
+      return take(network.links[parameter.item].conductance_W_per_K);
+    case Kind::power:
+      return take(network.heat_sources[parameter.item].power_W);
+    case Kind::expansion:
+      return take(network.displacements[parameter.item].um_per_K[parameter.part].second);
+    case Kind::sensor_offset:
+      return take(network.sensors[parameter.item].offset_K);
+    case Kind::effect:
+      return take(network.effects[parameter.item].parameters[parameter.part].second);
+  }
+}
+
+}  // namespace detail
+
+/// The effects of a network with every parameter of their laws, in the order of the law; those that are absent get the
+/// prior's mean. Throws Error on an unknown effect, place or parameter.
+inline ThermalNetwork with_complete_effects(ThermalNetwork network, const EffectLibrary& effects) {
+  for (std::size_t e = 0; e < network.effects.size(); ++e) {
+    ThermalNetwork::AddedEffect& added = network.effects[e];
+    const std::vector<EffectParameter> known = effects.at(added.effect).parameters(network, added);
+    std::vector<std::pair<std::string, double>> complete;
+    for (const EffectParameter& one : known) complete.emplace_back(one.name, added.value(one.name, one.mean));
+    for (const auto& [name, value] : added.parameters) {
+      const bool used = std::any_of(known.begin(), known.end(), [&](const auto& one) { return one.name == name; });
+      if (used) continue;
+      std::string allowed;
+      for (const EffectParameter& one : known) allowed += (allowed.empty() ? "" : ", ") + one.name;
+      throw Error("effects[" + std::to_string(e) + "]." + name, "no such parameter of " + added.effect, allowed,
+                  "remove or rename it");
+    }
+    added.parameters = std::move(complete);
+  }
+  return network;
+}
+
+/// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
+/// sensor offsets, then each effect's own (network.effects must be complete). Numbers that are zero and cannot be
+/// negative stay zero and are left out, and so are offsets of ambient sensors.
+inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& network, const EffectLibrary& effects) {
+  using Kind = Parameter::Kind;
+  std::vector<Parameter> result;
+  const auto positive = [&](Kind kind, std::size_t item, std::string name, const char* unit, double value, double sd) {
+    if (value > 0 && sd > 0) result.push_back({kind, item, 0, std::move(name), unit, true, value, sd, 0});
+  };
+  const ThermalNetwork::Uncertainty& sd = network.uncertainty;
+  const auto& nodes = network.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    positive(Kind::capacity, i, "capacity of " + nodes[i].name, "J/K", nodes[i].capacity_J_per_K, sd.capacity);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    positive(Kind::ambient, i, nodes[i].name + " to ambient", "W/K", nodes[i].ambient_W_per_K, sd.ambient);
+  for (std::size_t i = 0; i < network.links.size(); ++i) {
+    const ThermalNetwork::Link& link = network.links[i];
+    positive(Kind::conductance, i,
+             nodes[static_cast<std::size_t>(link.a)].name + " to " + nodes[static_cast<std::size_t>(link.b)].name,
+             "W/K", link.conductance_W_per_K, sd.conductance);
+  }
+  for (std::size_t i = 0; i < network.heat_sources.size(); ++i)
+    positive(Kind::power, i, "power of " + network.heat_sources[i].name, "W", network.heat_sources[i].power_W,
+             sd.power);
+  const auto linear = [&](Kind kind, std::size_t item, std::size_t part, std::string name, const char* unit,
+                          double mean, double spread) {
+    if (spread > 0) result.push_back({kind, item, part, std::move(name), unit, false, mean, spread});
+  };
+  for (std::size_t i = 0; i < network.displacements.size(); ++i) {
+    const ThermalNetwork::Displacement& output = network.displacements[i];
+    for (std::size_t k = 0; k < output.um_per_K.size(); ++k) {
+      const auto [node, value] = output.um_per_K[k];
+      linear(Kind::expansion, i, k, output.output + " per K of " + nodes[static_cast<std::size_t>(node)].name, "um/K",
+             value, sd.um_per_K * std::abs(value));
+    }
+  }
+  for (std::size_t i = 0; i < network.sensors.size(); ++i)
+    if (network.sensors[i].node >= 0)
+      linear(Kind::sensor_offset, i, 0, "offset of " + network.sensors[i].column, "K", network.sensors[i].offset_K,
+             sd.sensor_offset_K);
+  for (std::size_t e = 0; e < network.effects.size(); ++e) {
+    const ThermalNetwork::AddedEffect& added = network.effects[e];
+    const std::vector<EffectParameter> own = effects.at(added.effect).parameters(network, added);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (own[k].fixed) continue;
+      result.push_back({Kind::effect, e, k, added.effect + " at " + added.location + ": " + own[k].name, own[k].unit,
+                        own[k].logarithmic, own[k].mean, own[k].sd, own[k].lower, own[k].upper});
+    }
+  }
+  return result;
+}
+
+inline double value_in(const ThermalNetwork& network, const Parameter& parameter) {
+  double result = 0;
+  detail::visit_value(network, parameter, [&](const double& value) { result = value; });
+  return result;
+}
+
+inline Vector values_of(const ThermalNetwork& network, const std::vector<Parameter>& parameters) {
+  Vector values(static_cast<Index>(parameters.size()));
+  for (std::size_t j = 0; j < parameters.size(); ++j) values(static_cast<Index>(j)) = value_in(network, parameters[j]);
+  return values;
+}
+
+/// The network with other values, in the order of `parameters`.
+inline ThermalNetwork with_values(ThermalNetwork network, const std::vector<Parameter>& parameters,
+                                  const Vector& values) {
+  for (std::size_t j = 0; j < parameters.size(); ++j)
+    detail::visit_value(network, parameters[j], [&](double& value) { value = values(static_cast<Index>(j)); });
+  return network;
+}
 
 }  // namespace thermfit

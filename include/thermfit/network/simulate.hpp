@@ -4,8 +4,11 @@
 
 #include "thermfit/effects/effect.hpp"
 #include "thermfit/network/excitation.hpp"
+#include "thermfit/network/integrator.hpp"
 #include "thermfit/network/parameters.hpp"
-#include "thermfit/network/thermal_network.hpp"
+#include "thermfit/network/readings.hpp"
+#include "thermfit/network/system_of.hpp"
+#include "thermfit/network/time_grid.hpp"
 
 namespace thermfit {
 
@@ -14,12 +17,49 @@ struct Simulation {
   Matrix nodes_degC;  ///< samples x nodes (hidden nodes of effects after the network's own)
   Matrix channels;    ///< samples x channels: readings in degC, displacements in um
   /// (channel * samples + sample) x parameters: derivative of `channels` with respect to the *values* of the parameters
-  /// asked for. Empty when none were.
-  Matrix jacobian;
+  /// asked for. No columns when none were.
+  RowMatrix jacobian;
 };
 
-/// Simulates each excitation; `parameters` lists the numbers whose sensitivities are wanted (may be empty).
-std::vector<Simulation> simulate(const ThermalNetwork& network, const std::vector<Excitation>& excitations,
-                                 const EffectLibrary& effects, const std::vector<Parameter>& parameters = {});
+namespace detail {
+
+inline Simulation simulate_batch(const ThermalSystem& system, Regimes& regimes, const Excitation& excitation) {
+  const Drive drive(system, excitation);
+  Integrator integrator(system, regimes, drive);
+  Readings readings(system, drive);
+  const double delay_s = readings.delay_s();
+  const std::vector<GridPoint> grid = time_grid(excitation.time_s, delay_s);
+  Simulation result;
+  result.nodes_degC.resize(excitation.samples(), static_cast<Index>(system.capacities.size()));
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const GridPoint& point = grid[i];
+    const Regime& regime = integrator.enter(point.sample, point.time_s);
+    for (const Index k : point.readings) {
+      result.nodes_degC.row(k) = integrator.temperatures().transpose();
+      readings.take_temperatures(k, regime, integrator);
+    }
+    for (const Index k : point.positions) readings.take_displacements(k, point, regime, integrator);
+    if (i + 1 < grid.size()) integrator.advance(point.sample, point.time_s, grid[i + 1].time_s);
+  }
+  readings.finish();
+  result.channels = std::move(readings.values());
+  result.jacobian = std::move(readings.tangents());
+  return result;
+}
+
+}  // namespace detail
+
+/// Simulates each excitation; `parameters` lists the numbers whose sensitivities are wanted (may be empty). The effects
+/// of the network are looked up in `effects`; parameters of theirs that are absent take the prior's mean. Throws Error
+/// on an unknown effect or a missing input.
+inline std::vector<Simulation> simulate(const ThermalNetwork& network, const std::vector<Excitation>& excitations,
+                                        const EffectLibrary& effects, const std::vector<Parameter>& parameters = {}) {
+  const ThermalSystem system = system_of(network, effects, parameters);
+  detail::Regimes regimes(system);
+  std::vector<Simulation> result;
+  for (const Excitation& excitation : excitations)
+    result.push_back(detail::simulate_batch(system, regimes, excitation));
+  return result;
+}
 
 }  // namespace thermfit

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "thermfit/error.hpp"
+#include "thermfit/network/excitation.hpp"
+#include "thermfit/network/thermal_system.hpp"
+
+namespace thermfit::detail {
+
+/// An excitation as one system sees it: the inputs it asks for, ambient after the effects on it, heat of a step.
+class Drive {
+ public:
+  Drive(const ThermalSystem& system, const Excitation& excitation) : system_(system), excitation_(excitation) {
+    const Index samples = excitation.samples();
+    inputs_.resize(samples, static_cast<Index>(system.inputs.size()));
+    for (std::size_t i = 0; i < system.inputs.size(); ++i) {
+      const Index from = excitation.find_input(system.inputs[i]);
+      if (from < 0 || !excitation.inputs.col(from).allFinite()) {
+        std::string known;
+        for (const std::string& name : excitation.input_names) known += (known.empty() ? "" : ", ") + name;
+        throw Error("batch " + excitation.batch,
+                    (from < 0 ? "there is no input column '" : "missing values in column '") + system.inputs[i] + "'",
+                    known, "an effect of the machine is driven by it");
+      }
+      inputs_.col(static_cast<Index>(i)) = excitation.inputs.col(from);
+    }
+    ambient_ = excitation.ambient_degC;
+    if (!system.ambient_laws.empty()) apply_ambient_laws();
+  }
+
+  Index samples() const { return ambient_.size(); }
+  const Excitation& excitation() const { return excitation_; }
+
+  double time_s(Index sample) const { return excitation_.time_s(sample); }
+
+  /// Linear between samples; the last value after the last.
+  double ambient(Index sample, double time_s) const { return between(ambient_, sample, time_s); }
+  /// Derivative of ambient with respect to each parameter at a time; no columns when no effect acts on ambient.
+  bool ambient_moves() const { return ambient_tangents_.size() > 0; }
+  Eigen::RowVectorXd ambient_tangent(Index sample, double time_s) const {
+    const double f = fraction(sample, time_s);
+    if (f == 0) return ambient_tangents_.row(sample);
+    return (1 - f) * ambient_tangents_.row(sample) + f * ambient_tangents_.row(sample + 1);
+  }
+  double ambient_rate(Index sample) const {
+    if (sample + 1 >= samples()) return 0;
+    return (ambient_(sample + 1) - ambient_(sample)) / (time_s_(sample + 1) - time_s_(sample));
+  }
+
+  /// The moment at a time, with the inputs of `sample`; `temperature_degC` may be null.
+  Moment moment(Index sample, double time_s, const double* temperature_degC) const {
+    Moment now;
+    now.time_s = time_s;
+    now.ambient_degC = ambient(sample, time_s);
+    now.first_ambient_degC = ambient_(0);
+    const Vector& measured = excitation_.measured_ambient_degC;
+    now.measured_ambient_degC = measured.size() > 0 ? between(measured, sample, time_s) : now.ambient_degC;
+    now.first_measured_ambient_degC = measured.size() > 0 ? measured(0) : now.first_ambient_degC;
+    now.inputs = inputs_.row(sample).data();
+    now.temperature_degC = temperature_degC;
+    return now;
+  }
+
+  /// (u/scale)^exponent of a source; of |u| where the exponent is not 1, so that reverse motion heats too.
+  double activity(const ThermalSystem::Source& source, Index sample) const {
+    if (source.input < 0) return 1;
+    const double u = inputs_(sample, source.input) / source.scale;
+    return source.exponent == 1 ? u : std::pow(std::abs(u), source.exponent);
+  }
+
+  bool same_inputs(Index a, Index b) const { return inputs_.row(a) == inputs_.row(b); }
+
+ private:
+  double fraction(Index sample, double time_s) const {
+    if (sample + 1 >= samples()) return 0;
+    return (time_s - time_s_(sample)) / (time_s_(sample + 1) - time_s_(sample));
+  }
+  double between(const Vector& values, Index sample, double time_s) const {
+    const double f = fraction(sample, time_s);
+    return f == 0 ? values(sample) : values(sample) + f * (values(sample + 1) - values(sample));
+  }
+
+  void apply_ambient_laws() {
+    ambient_tangents_ = Matrix::Zero(samples(), system_.columns);
+    for (const BoundLaw& law : system_.ambient_laws) {
+      const Vector before = ambient_;
+      for (Index k = 0; k < samples(); ++k) {
+        Moment now = moment(k, time_s_(k), nullptr);
+        now.ambient_degC = before(k);
+        now.first_ambient_degC = before(0);
+        const double step = 1e-4;
+        Moment above = now, below = now;
+        above.ambient_degC += step;
+        below.ambient_degC -= step;
+        ambient_tangents_.row(k) *= (system_.value(law, above) - system_.value(law, below)) / (2 * step);
+        system_.derivatives(law, now, [&](Column column, double slope) { ambient_tangents_(k, column) += slope; });
+        ambient_(k) = system_.value(law, now);
+      }
+    }
+  }
+
+  const ThermalSystem& system_;
+  const Excitation& excitation_;
+  const Vector& time_s_ = excitation_.time_s;
+  RowMatrix inputs_;
+  Vector ambient_;
+  Matrix ambient_tangents_;  ///< samples x parameters
+};
+
+}  // namespace thermfit::detail

@@ -1,0 +1,302 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "thermfit/network/drive.hpp"
+#include "thermfit/network/regime.hpp"
+
+namespace thermfit::detail {
+
+/// The modal state of one batch and its tangents, carried from one time to the next.
+///
+/// Linear parts are exact. Heat that depends on temperatures enters by ETD2RK (Cox & Matthews 2002), of second order;
+/// tangents are the exact derivatives of what is computed. The tangent for a conductance is the network's response to
+/// the heat flow through it, for a capacity to the heat stored in it, both integrated exactly by divided differences.
+class Integrator {
+ public:
+  Integrator(const ThermalSystem& system, Regimes& regimes, const Drive& drive)
+      : system_(system), regimes_(regimes), drive_(drive), tangents_wanted_(system.columns > 0) {
+    nodes_ = regimes.capacities().size();
+    start();
+  }
+
+  /// Turns to the regime of the inputs held from here on; to be called before anything else at each time.
+  Regime& enter(Index sample, double time_s) {
+    Regime& regime = regimes_.at(drive_.moment(sample, time_s, nullptr));
+    if (&regime != regime_) {
+      const Matrix& modes = regime.propagator.modes();
+      if (regime_) temperatures_ = regime_->propagator.modes().transpose() * state_;
+      state_ = modes * regimes_.capacities().cwiseProduct(temperatures_);
+      if (tangents_wanted_) {
+        if (regime_) tangents_ = regime_->propagator.modes().transpose() * tangents_;
+        tangents_ = modes * (regimes_.capacities().asDiagonal() * tangents_).eval();
+      }
+      regime_ = &regime;
+    }
+    temperatures_ = regime.propagator.modes().transpose() * state_;
+    set_heat(sample, time_s);
+    return regime;
+  }
+
+  const Vector& temperatures() const { return temperatures_; }
+  const Matrix& modal_tangents() const { return tangents_; }
+
+  /// dtheta/dt just after the present time.
+  Vector rates(Index sample, double time_s) {
+    Vector force = held_force_ + drive_.ambient(sample, time_s) * regime_->ambient_drive;
+    if (!system_.state_flows.empty()) force += flows(sample, time_s, temperatures_, tangents_, nullptr);
+    return regime_->propagator.modes().transpose() * (force - regime_->propagator.rates().cwiseProduct(state_));
+  }
+
+  /// On to `end_s` under the inputs of `sample`.
+  void advance(Index sample, double begin_s, double end_s) {
+    const int substeps = system_.state_flows.empty() ? 1 : substeps_for(end_s - begin_s);
+    for (int i = 0; i < substeps; ++i) {
+      const double a = begin_s + (end_s - begin_s) * i / substeps;
+      const double b = i + 1 == substeps ? end_s : begin_s + (end_s - begin_s) * (i + 1) / substeps;
+      substep(sample, a, b, regime_->propagator.step((end_s - begin_s) / substeps, tangents_wanted_));
+    }
+  }
+
+ private:
+  void start() {
+    const Excitation& excitation = drive_.excitation();
+    temperatures_ = Vector::Zero(nodes_);
+    temperatures_.head(system_.own_nodes) = excitation.start_degC;
+    tangents_ = Matrix::Zero(nodes_, system_.columns);
+    for (Index node = 0; node < system_.own_nodes; ++node) {
+      const auto& sensors = excitation.start_sensors[static_cast<std::size_t>(node)];
+      for (const Index s : sensors) {
+        const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
+        const double share = 1 / static_cast<double>(sensors.size());
+        temperatures_(node) -= share * sensor.offset_K;
+        if (sensor.column >= 0) tangents_(node, sensor.column) -= share;
+      }
+    }
+    const Moment now = drive_.moment(0, drive_.time_s(0), nullptr);
+    for (const auto& [node, law] : system_.starts) {
+      temperatures_(node) += system_.value(law, now);
+      const Index row = node;
+      system_.derivatives(law, now, [&](Column column, double slope) { tangents_(row, column) += slope; });
+    }
+    for (Index i = system_.own_nodes; i < nodes_; ++i) {
+      const ThermalSystem::Capacity& hidden = system_.capacities[static_cast<std::size_t>(i)];
+      temperatures_(i) = temperatures_(hidden.starts_like);
+      tangents_.row(i) = tangents_.row(hidden.starts_like);
+    }
+    rate_bound_ = state_flow_rate();
+  }
+
+  /// Fastest rate at which the state-dependent heat could move a node, 15 K above the start.
+  double state_flow_rate() {
+    if (system_.state_flows.empty()) return 0;
+    Vector warm = temperatures_.array() + 15;
+    Vector slope = Vector::Zero(nodes_);
+    for (const ThermalSystem::StateFlow& flow : system_.state_flows)
+      for (const Index node : flow.depends_on) {
+        const double kept = warm(node);
+        warm(node) = kept + difference_step;
+        const double above = flow_W(flow, 0, 0, warm);
+        warm(node) = kept - difference_step;
+        slope(node) += std::abs(above - flow_W(flow, 0, 0, warm)) / (2 * difference_step);
+        warm(node) = kept;
+      }
+    return slope.cwiseQuotient(regimes_.capacities()).maxCoeff();
+  }
+  int substeps_for(double h) const { return 1 + static_cast<int>(std::min(1000.0, h * rate_bound_ / 0.1)); }
+
+  /// Heat that is held over the step, as modal force, and its slopes.
+  void set_heat(Index sample, double time_s) {
+    Vector heat = Vector::Zero(nodes_);
+    heat_slopes_.clear();
+    for (const ThermalSystem::Source& source : system_.sources) {
+      const double activity = drive_.activity(source, sample);
+      for (const auto& [node, share] : source.into) heat(node) += source.power_W * activity * share;
+      if (source.column >= 0 && activity != 0) heat_slopes_.push_back({source.column, activity, &source.into});
+    }
+    if (!system_.held_heat.empty()) {
+      const Moment now = drive_.moment(sample, time_s, nullptr);
+      for (const ThermalSystem::HeldHeat& one : system_.held_heat) {
+        const double power_W = system_.value(one.law, now);
+        for (const auto& [node, share] : one.into) heat(node) += power_W * share;
+        system_.derivatives(one.law, now, [&](Column column, double slope) {
+          heat_slopes_.push_back({column, slope, &one.into});
+        });
+      }
+    }
+    held_force_ = regime_->propagator.modes() * heat;
+  }
+
+  double flow_W(const ThermalSystem::StateFlow& flow, Index sample, double time_s, const Vector& degC) const {
+    const Moment now = drive_.moment(sample, time_s, degC.data());
+    double value = system_.value(flow.law, now);
+    if (flow.element >= 0) {
+      const ThermalSystem::Conductance& one = system_.conductances[static_cast<std::size_t>(flow.element)];
+      value *= one.W_per_K * ((one.b >= 0 ? degC(one.b) : now.ambient_degC) - degC(one.a));
+    }
+    return value;
+  }
+
+  /// Modal force of all state-dependent heat at `degC`, and its tangents where `slopes` is given.
+  Vector flows(Index sample, double time_s, Vector degC, const Matrix& modal_tangents, Matrix* slopes) const {
+    const Matrix& modes = regime_->propagator.modes();
+    Vector force = Vector::Zero(nodes_);
+    if (slopes) slopes->setZero(nodes_, system_.columns);
+    for (const ThermalSystem::StateFlow& flow : system_.state_flows) {
+      Vector pattern = Vector::Zero(nodes_);
+      for (const auto& [node, share] : flow.into) pattern += share * modes.col(node);
+      force += flow_W(flow, sample, time_s, degC) * pattern;
+      if (slopes) *slopes += pattern * flow_tangent(flow, sample, time_s, degC, modal_tangents);
+    }
+    return force;
+  }
+
+  Eigen::RowVectorXd flow_tangent(const ThermalSystem::StateFlow& flow, Index sample, double time_s, Vector& degC,
+                                  const Matrix& modal_tangents) const {
+    Eigen::RowVectorXd tangent = Eigen::RowVectorXd::Zero(system_.columns);
+    for (const Index node : flow.depends_on) {
+      const double kept = degC(node);
+      degC(node) = kept + difference_step;
+      const double above = flow_W(flow, sample, time_s, degC);
+      degC(node) = kept - difference_step;
+      const double slope = (above - flow_W(flow, sample, time_s, degC)) / (2 * difference_step);
+      degC(node) = kept;
+      tangent.noalias() += slope * (regime_->propagator.modes().col(node).transpose() * modal_tangents);
+    }
+    const Moment now = drive_.moment(sample, time_s, degC.data());
+    double factor = 1;
+    if (flow.element >= 0) {
+      const ThermalSystem::Conductance& one = system_.conductances[static_cast<std::size_t>(flow.element)];
+      const double difference = (one.b >= 0 ? degC(one.b) : now.ambient_degC) - degC(one.a);
+      factor = one.W_per_K * difference;
+      if (one.column >= 0) tangent(one.column) += difference * system_.value(flow.law, now);
+      if (one.b == ThermalSystem::ambient && drive_.ambient_moves())
+        tangent += one.W_per_K * system_.value(flow.law, now) * drive_.ambient_tangent(sample, time_s);
+    }
+    if (drive_.ambient_moves()) {
+      Moment above = now, below = now;
+      above.ambient_degC += difference_step;
+      below.ambient_degC -= difference_step;
+      tangent += factor * (system_.value(flow.law, above) - system_.value(flow.law, below)) / (2 * difference_step) *
+                 drive_.ambient_tangent(sample, time_s);
+    }
+    system_.derivatives(flow.law, now, [&](Column column, double slope) { tangent(column) += factor * slope; });
+    return tangent;
+  }
+
+  void substep(Index sample, double begin_s, double end_s, const StepWeights& weights) {
+    const double first = drive_.ambient(sample, begin_s), rise = drive_.ambient(sample, end_s) - first;
+    Vector force = held_force_ + first * regime_->ambient_drive;
+    Vector ramp = rise * regime_->ambient_drive;
+    if (system_.state_flows.empty()) {
+      if (tangents_wanted_) step_tangents(sample, begin_s, end_s, weights, force, ramp, nullptr, nullptr);
+      step_state(weights, force, ramp);
+      return;
+    }
+    const Vector before = state_;
+    const Vector degC = regime_->propagator.modes().transpose() * state_;
+    Matrix slopes_before, slopes_after, tangents_before = tangents_;
+    const Vector flow_before = flows(sample, begin_s, degC, tangents_, tangents_wanted_ ? &slopes_before : nullptr);
+    force += flow_before;
+    if (tangents_wanted_) step_tangents(sample, begin_s, end_s, weights, force, ramp, &slopes_before, nullptr);
+    step_state(weights, force, ramp);
+    const Vector flow_after = flows(sample, end_s, regime_->propagator.modes().transpose() * state_, tangents_,
+                                    tangents_wanted_ ? &slopes_after : nullptr);
+    ramp += flow_after - flow_before;
+    state_ = before;
+    if (tangents_wanted_) {
+      tangents_.swap(tangents_before);
+      slopes_after -= slopes_before;
+      step_tangents(sample, begin_s, end_s, weights, force, ramp, &slopes_before, &slopes_after);
+    }
+    step_state(weights, force, ramp);
+  }
+
+  void step_state(const StepWeights& weights, const Vector& force, const Vector& ramp) {
+    state_ = weights.decay.cwiseProduct(state_) + weights.held.cwiseProduct(force) + weights.ramp.cwiseProduct(ramp);
+  }
+
+  /// Tangents over a step that begins in `state_` under force + ramp s/h; `slopes`, `ramp_slopes` are tangents of them.
+  void step_tangents(Index sample, double begin_s, double end_s, const StepWeights& weights, const Vector& force,
+                     const Vector& ramp, const Matrix* slopes, const Matrix* ramp_slopes) {
+    const Regime& regime = *regime_;
+    const Matrix& modes = regime.propagator.modes();
+    tangents_ = weights.decay.asDiagonal() * tangents_;
+    for (const HeatSlope& one : heat_slopes_)
+      for (const auto& [node, share] : *one.into)
+        tangents_.col(one.column) += one.slope * share * weights.held.cwiseProduct(modes.col(node));
+    if (drive_.ambient_moves()) {
+      const Eigen::RowVectorXd first = drive_.ambient_tangent(sample, begin_s);
+      const Eigen::RowVectorXd rise = drive_.ambient_tangent(sample, end_s) - first;
+      tangents_ += weights.held.cwiseProduct(regime.ambient_drive) * first;
+      tangents_ += weights.ramp.cwiseProduct(regime.ambient_drive) * rise;
+    }
+    const bool any_node = std::any_of(regime.slopes.begin(), regime.slopes.end(), [](auto& s) { return s.link < 0; });
+    mix_.noalias() = weights.from_state * state_.asDiagonal();
+    mix_ += weights.from_held * force.asDiagonal();
+    mix_ += weights.from_ramp * ramp.asDiagonal();
+    if (regime.links.cols() > 0) {
+      through_links_.noalias() = mix_ * regime.links;
+      through_links_ = through_links_.cwiseProduct(regime.links);
+    }
+    if (any_node) {
+      to_ambient_.noalias() = mix_ * modes;
+      to_ambient_ = to_ambient_.cwiseProduct(modes);
+    }
+    const double first = drive_.ambient(sample, begin_s), rise = drive_.ambient(sample, end_s) - first;
+    const Vector air = first * weights.held + rise * weights.ramp;
+    for (const Regime::Slope& one : regime.slopes) {
+      if (one.link >= 0) {
+        tangents_.col(one.column) -= one.slope * through_links_.col(one.link);
+        continue;
+      }
+      tangents_.col(one.column) -= one.slope * to_ambient_.col(one.a);
+      if (one.to_ambient) tangents_.col(one.column) += one.slope * modes.col(one.a).cwiseProduct(air);
+    }
+    step_capacity_tangents(weights, end_s - begin_s, force, ramp);
+    if (slopes) tangents_ += weights.held.asDiagonal() * *slopes;
+    if (ramp_slopes) tangents_ += weights.ramp.asDiagonal() * *ramp_slopes;
+  }
+
+  void step_capacity_tangents(const StepWeights& weights, double h, const Vector& force, const Vector& ramp) {
+    const Matrix& modes = regime_->propagator.modes();
+    bool mixed = false;
+    for (Index i = 0; i < nodes_; ++i) {
+      const ThermalSystem::Capacity& one = system_.capacities[static_cast<std::size_t>(i)];
+      const auto add = [&](Column column, double slope) {
+        if (!mixed) {
+          const Vector speed = force - regime_->propagator.rates().cwiseProduct(state_);
+          mix_.noalias() = weights.from_state * speed.asDiagonal();
+          mix_ += weights.from_held * (ramp / h).asDiagonal();
+          mixed = true;
+        }
+        tangents_.col(column).noalias() -= slope * modes.col(i).cwiseProduct(mix_ * modes.col(i));
+      };
+      if (one.column >= 0) add(one.column, 1);
+      if (one.from_law) system_.derivatives(one.law, Moment{}, add);
+    }
+  }
+
+  struct HeatSlope {
+    Column column;
+    double slope;
+    const Shares* into;
+  };
+  static constexpr double difference_step = 3e-5;  ///< K
+
+  const ThermalSystem& system_;
+  Regimes& regimes_;
+  const Drive& drive_;
+  const bool tangents_wanted_;
+  Index nodes_ = 0;
+  Regime* regime_ = nullptr;
+  Vector temperatures_, state_, held_force_;
+  Matrix tangents_;  ///< modal, nodes x parameters; of temperatures before the first regime
+  std::vector<HeatSlope> heat_slopes_;
+  double rate_bound_ = 0;
+  Matrix mix_, through_links_, to_ambient_;
+};
+
+}  // namespace thermfit::detail

@@ -1,0 +1,237 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "thermfit/network/moment.hpp"
+#include "thermfit/network/thermal_network.hpp"
+
+namespace thermfit {
+
+/// Which column of the sensitivities belongs to a number; -1 where its sensitivity is not wanted.
+using Column = Index;
+
+/// A law together with the values, columns and difference steps of the parameters of the effect it belongs to.
+struct BoundLaw {
+  struct Owner {
+    std::vector<double> values, steps;
+    std::vector<Column> columns;
+  };
+  Law law;
+  std::size_t owner = 0;
+};
+
+/// Node and share of what enters it.
+using Shares = std::vector<std::pair<Index, double>>;
+
+/// A network ready to be integrated: its elements, those of its effects, and which parameter each belongs to.
+///
+/// Effects add their laws here in Effect::act(). Whatever a law of held inputs can express (heat, conductance) is
+/// integrated exactly; what depends on temperatures (`heat_flow`, `scale_conductance_by_state`) by an exponential
+/// integrator of second order. Sensitivities follow by themselves.
+class ThermalSystem {
+ public:
+  /// Acts on the temperatures of a whole series: transforms `series`, and each column of `tangents` along with it.
+  /// `parameter_tangent(j)` is the column of the effect's j-th parameter in `tangents`, or -1.
+  using SeriesLaw =
+      std::function<void(Eigen::Ref<Vector> series, Matrix& tangents, const double* parameters, const Column* columns)>;
+
+  static constexpr Index ambient = ThermalNetwork::ambient_node;
+  static constexpr Index ground = -2;  ///< a fixed 0 degC, for conductances whose far side is a heat of its own
+
+  struct Conductance {
+    Index a = 0, b = ambient;
+    double W_per_K = 0;           ///< base value; 0 for elements that are all law
+    Column column = -1;           ///< of the base value
+    std::vector<BoundLaw> scale;  ///< value = base (1 + sum scale) + sum added
+    std::vector<BoundLaw> added;
+    bool held() const { return !scale.empty() || !added.empty(); }
+  };
+  struct Source {
+    Shares into;
+    double power_W = 0, scale = 1, exponent = 1;
+    Index input = -1;  ///< -1: constant
+    Column column = -1;
+  };
+  struct HeldHeat {
+    Shares into;
+    BoundLaw law;
+  };
+  /// Heat that depends on temperatures: W into the shares. With `element` >= 0 it is that conductance's base value
+  /// times the law times the temperature difference from b to a.
+  struct StateFlow {
+    Shares into;
+    std::vector<Index> depends_on;
+    BoundLaw law;
+    Index element = -1;
+  };
+  struct Capacity {
+    double J_per_K = 0;
+    Column column = -1;
+    BoundLaw law;  ///< for hidden nodes
+    bool from_law = false;
+    Index starts_like = -1;
+  };
+  struct Sensor {
+    Index node = 0;
+    double offset_K = 0;
+    Column column = -1;
+    std::vector<BoundLaw> laws;
+  };
+  struct Displacement {
+    bool zero_at_first_sample = true;
+    std::vector<std::pair<Index, double>> um_per_K;
+    std::vector<Column> columns;
+    struct Term {
+      std::vector<Index> depends_on;
+      BoundLaw law;
+    };
+    struct Operator {
+      SeriesLaw law;
+      std::size_t owner;
+    };
+    std::vector<Term> terms;
+    std::vector<Operator> operators;
+  };
+
+  // --- what effects call -----------------------------------------------------------------------------------------
+
+  /// Place of an input column in Moment::inputs. The simulation demands it of every batch.
+  Index input(const std::string& name) {
+    const auto it = std::find(inputs.begin(), inputs.end(), name);
+    if (it != inputs.end()) return static_cast<Index>(it - inputs.begin());
+    inputs.push_back(name);
+    return static_cast<Index>(inputs.size()) - 1;
+  }
+
+  /// Heat in W that depends on held inputs only.
+  void heat(Shares into, Law law_W) { held_heat.push_back({std::move(into), bind(std::move(law_W))}); }
+
+  /// Heat in W that depends on temperatures of the nodes in `depends_on` and on ambient.
+  void heat_flow(Shares into, std::vector<Index> depends_on, Law law_W) {
+    state_flows.push_back({std::move(into), std::move(depends_on), bind(std::move(law_W)), -1});
+  }
+
+  /// The conductance element of a node to ambient, and of a link.
+  Index ambient_element(Index node) const { return node; }
+  Index link_element(Index link) const { return own_nodes + link; }
+
+  /// G becomes G (1 + law), law of held inputs.
+  void scale_conductance(Index element, Law law) { at(conductances, element).scale.push_back(bind(std::move(law))); }
+
+  /// G becomes G (1 + law), law of temperatures.
+  void scale_conductance_by_state(Index element, Law law) {
+    const Conductance& one = at(conductances, element);
+    StateFlow flow{{{one.a, 1.0}}, {one.a}, bind(std::move(law)), element};
+    if (one.b >= 0) {
+      flow.into.emplace_back(one.b, -1.0);
+      flow.depends_on.push_back(one.b);
+    }
+    state_flows.push_back(std::move(flow));
+  }
+
+  /// A conductance in W/K between a node and a node or `ambient`, law of held inputs.
+  void add_conductance(Index a, Index b, Law law_W_per_K) {
+    Conductance one;
+    one.a = a;
+    one.b = b;
+    one.added.push_back(bind(std::move(law_W_per_K)));
+    conductances.push_back(std::move(one));
+  }
+
+  /// A conductance between a node and something held at a temperature, both laws of held inputs.
+  void add_conductance_to(Index node, Law law_W_per_K, Law law_degC) {
+    heat({{node, 1.0}}, [law_W_per_K, law_degC](const Moment& now, const double* p) {
+      return law_W_per_K(now, p) * law_degC(now, p);
+    });
+    add_conductance(node, ground, std::move(law_W_per_K));
+  }
+
+  /// A hidden mass that starts at the temperature of `starts_like`; its index. Capacity in J/K, a law of parameters
+  /// only.
+  Index add_node(Index starts_like, Law law_J_per_K) {
+    Capacity one;
+    one.law = bind(std::move(law_J_per_K));
+    one.from_law = true;
+    one.starts_like = starts_like;
+    capacities.push_back(std::move(one));
+    return static_cast<Index>(capacities.size()) - 1;
+  }
+
+  /// The sensor now reads this node.
+  void read_from(Index sensor, Index node) { at(sensors, sensor).node = node; }
+
+  /// A reading becomes the law of it (Moment::reading_degC).
+  void reading(Index sensor, Law law_degC) { at(sensors, sensor).laws.push_back(bind(std::move(law_degC))); }
+
+  /// A node starts by law (K) above where it would have.
+  void start(Index node, Law law_K) { starts.emplace_back(node, bind(std::move(law_K))); }
+
+  /// Ambient becomes the law at each sample (Moment::ambient_degC is what it was), linear between them.
+  void ambient_becomes(Law law_degC) { ambient_laws.push_back(bind(std::move(law_degC))); }
+
+  /// A displacement output gains the law in um.
+  void displacement(Index output, std::vector<Index> depends_on, Law law_um) {
+    at(displacements, output).terms.push_back({std::move(depends_on), bind(std::move(law_um))});
+  }
+  void displacement_series(Index output, SeriesLaw law) {
+    at(displacements, output).operators.push_back({std::move(law), current_owner()});
+  }
+
+  /// All displacements are logged late by law (s), a law of parameters only.
+  void delay_displacements(Law law_s) { delays.push_back(bind(std::move(law_s))); }
+
+  // --- contents ---------------------------------------------------------------------------------------------------
+
+  Index own_nodes = 0;  ///< nodes of the network itself; hidden nodes follow
+  double reference_degC = 20;
+  std::vector<std::string> inputs;
+  std::vector<Capacity> capacities;
+  std::vector<Conductance> conductances;
+  std::vector<Source> sources;
+  std::vector<HeldHeat> held_heat;
+  std::vector<StateFlow> state_flows;
+  std::vector<std::pair<Index, BoundLaw>> starts;
+  std::vector<BoundLaw> ambient_laws;
+  std::vector<BoundLaw> delays;
+  std::vector<Sensor> sensors;
+  std::vector<Displacement> displacements;
+  std::vector<BoundLaw::Owner> owners;  ///< one for each effect
+  Index columns = 0;                    ///< parameters whose sensitivities are wanted
+
+  double value(const BoundLaw& bound, const Moment& now) const {
+    return bound.law(now, owners[bound.owner].values.data());
+  }
+
+  /// Calls `take(column, dlaw/dparameter)` for each wanted parameter, by central differences.
+  template <class Take>
+  void derivatives(const BoundLaw& bound, const Moment& now, Take take) const {
+    const BoundLaw::Owner& owner = owners[bound.owner];
+    for (std::size_t j = 0; j < owner.values.size(); ++j) {
+      if (owner.columns[j] < 0) continue;
+      double shifted[16];
+      std::copy(owner.values.begin(), owner.values.end(), shifted);
+      shifted[j] = owner.values[j] + owner.steps[j];
+      const double above = bound.law(now, shifted);
+      shifted[j] = owner.values[j] - owner.steps[j];
+      const double slope = (above - bound.law(now, shifted)) / (2 * owner.steps[j]);
+      if (slope != 0) take(owner.columns[j], slope);
+    }
+  }
+
+  static constexpr std::size_t most_parameters = 16;  ///< of one effect
+
+ private:
+  std::size_t current_owner() const { return owners.size() - 1; }
+  BoundLaw bind(Law law) const { return {std::move(law), current_owner()}; }
+  template <class Items>
+  static auto& at(Items& items, Index i) {
+    return items[static_cast<std::size_t>(i)];
+  }
+};
+
+}  // namespace thermfit
