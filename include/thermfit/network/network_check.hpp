@@ -7,6 +7,7 @@
 
 #include "thermfit/error.hpp"
 #include "thermfit/network/thermal_network.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 
@@ -107,7 +108,7 @@ class NetworkCheck {
         sum += share;
       }
       if (!(std::abs(sum - 1) <= 1e-6))
-        fail(at("heat_sources", i, "into"), "shares that add to " + short_number(sum), "shares that add to 1");
+        fail(at("heat_sources", i, "into"), "shares that add to " + general_text(sum, 6), "shares that add to 1");
     }
   }
 
@@ -170,16 +171,6 @@ class NetworkCheck {
     if (!cut_off.empty())
       fail("links", "no way for heat to leave " + cut_off, "a path of links from every node to ambient",
            "add a link, or an ambient_W_per_K above 0");
-  }
-
-  /// Six significant digits are enough for a complaint; the library proper does not print numbers elsewhere.
-  static std::string short_number(double value) {
-    std::string text = std::to_string(std::llround(value * 1e6));
-    const bool negative = text[0] == '-';
-    if (negative) text.erase(0, 1);
-    if (text.size() < 7) text.insert(0, 7 - text.size(), '0');
-    text.insert(text.size() - 6, ".");
-    return (negative ? "-" : "") + text;
   }
 
   const ThermalNetwork& network_;

@@ -228,8 +228,8 @@ class ThermalSystem {
  private:
   std::size_t current_owner() const { return owners.size() - 1; }
   BoundLaw bind(Law law) const { return {std::move(law), current_owner()}; }
-  template <class Items>
-  static auto& at(Items& items, Index i) {
+  template <class Item>
+  static Item& at(std::vector<Item>& items, Index i) {
     return items[static_cast<std::size_t>(i)];
   }
 };
