@@ -1,0 +1,224 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "thermfit/gap/linearized.hpp"
+
+namespace thermfit {
+
+/// A machine fitted to a campaign: maximum a posteriori values of all its parameters and the noise of every channel.
+struct MapFit {
+  ThermalNetwork prior;  ///< the machine before the data: the means of the priors, effects complete
+  std::vector<Parameter> parameters;
+  Vector t;                          ///< working coordinates: prior standard deviations from the prior's mean
+  std::vector<ResidualNoise> noise;  ///< by channel
+  std::vector<Simulation> simulated;
+  Residuals residual;
+  SummedEquations equations;
+  double log_likelihood = 0;
+  double log_posterior = 0;  ///< log_likelihood - t't/2
+  double log_evidence = 0;   ///< Laplace: log_posterior - log|J'R^-1 J + I| / 2
+  int iterations = 0;
+  bool converged = false;
+
+  Vector values(const Vector& coordinates) const {
+    Vector result(coordinates.size());
+    for (Index j = 0; j < coordinates.size(); ++j) result(j) = parameter(j).value(coordinates(j));
+    return result;
+  }
+  ThermalNetwork network_at(const Vector& coordinates) const {
+    return with_values(prior, parameters, values(coordinates));
+  }
+  ThermalNetwork network() const { return network_at(t); }
+  Vector slopes() const {
+    Vector result(t.size());
+    for (Index j = 0; j < t.size(); ++j) result(j) = parameter(j).slope(t(j));
+    return result;
+  }
+  const Parameter& parameter(Index j) const { return parameters[static_cast<std::size_t>(j)]; }
+
+  /// Sum over all batches, without the prior.
+  NormalEquations total() const {
+    NormalEquations result(t.size());
+    for (const NormalEquations& one : equations.by_batch) {
+      result.information += one.information;
+      result.score += one.score;
+      result.squares += one.squares;
+    }
+    return result;
+  }
+};
+
+struct FitOptions {
+  int most_iterations = 30;
+  double tolerance = 0.3;            ///< nats of log posterior an iteration must gain to go on
+  std::vector<ResidualNoise> noise;  ///< to start from; empty: from the residual at the start
+  Vector start;                      ///< working coordinates; empty: the prior's means
+};
+
+namespace detail {
+
+/// Coordinates between which a parameter may move.
+inline std::pair<double, double> coordinate_range(const Parameter& parameter) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const auto at = [&](double value, double open) {
+    if (!std::isfinite(value)) return open;
+    const double t = parameter.coordinate(value);
+    return std::isfinite(t) ? t : open;
+  };
+  // Ten prior standard deviations are beyond belief, and beyond what the exponential of a logarithm should be asked.
+  const double wide = parameter.logarithmic ? 10 : inf;
+  return {std::max(-wide, at(parameter.lower, -inf)), std::min(wide, at(parameter.upper, inf))};
+}
+
+/// Minimises s't - t'As/2 style quadratics: the step of (information + damping) step = gradient that stays in the box,
+/// by fixing the coordinates that would leave it.
+inline Vector step_in_box(const Matrix& information, const Vector& gradient, const Vector& t, const Vector& low,
+                          const Vector& high) {
+  const Index n = t.size();
+  std::vector<char> fixed(static_cast<std::size_t>(n), 0);
+  Vector step = Vector::Zero(n);
+  for (int pass = 0; pass < 4; ++pass) {
+    std::vector<Index> free;
+    Vector pushed = gradient;
+    for (Index j = 0; j < n; ++j)
+      if (fixed[static_cast<std::size_t>(j)])
+        pushed -= step(j) * information.col(j);
+      else
+        free.push_back(j);
+    const Index m = static_cast<Index>(free.size());
+    if (m == 0) return step;
+    Vector solution;
+    if (m == n) {
+      solution = information.llt().solve(pushed);
+    } else {
+      Matrix part(m, m);
+      Vector right(m);
+      for (Index i = 0; i < m; ++i) {
+        right(i) = pushed(free[static_cast<std::size_t>(i)]);
+        for (Index j = 0; j < m; ++j)
+          part(i, j) = information(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(j)]);
+      }
+      solution = part.llt().solve(right);
+    }
+    bool left = false;
+    for (Index i = 0; i < m; ++i) {
+      const Index j = free[static_cast<std::size_t>(i)];
+      step(j) = solution(i);
+      const double to = t(j) + step(j);
+      if (to >= low(j) && to <= high(j)) continue;
+      step(j) = std::clamp(to, low(j), high(j)) - t(j);
+      fixed[static_cast<std::size_t>(j)] = 1;
+      left = true;
+    }
+    if (!left) return step;
+  }
+  return step;
+}
+
+inline double whitened_squares(const Residuals& residual, const std::vector<std::vector<Whitener>>& whiteners) {
+  double sum = 0;
+  for (std::size_t c = 0; c < residual.size(); ++c)
+    for (std::size_t b = 0; b < residual[c].size(); ++b) {
+      Vector r = residual[c][b];
+      whiteners[c][b].apply(r);
+      sum += r.squaredNorm();
+    }
+  return sum;
+}
+
+inline bool all_finite(const Observations& seen, const std::vector<Simulation>& simulated) {
+  for (const ObservedChannel& channel : seen.channels)
+    for (const Simulation& one : simulated)
+      if (!one.channels.col(channel.column).allFinite()) return false;
+  return true;
+}
+
+}  // namespace detail
+
+/// Noise of every channel from its residual, within the channel's bounds.
+inline std::vector<ResidualNoise> noise_of(const Observations& seen, const Residuals& residual,
+                                           const std::vector<ResidualNoise>& start = {}) {
+  std::vector<ResidualNoise> result;
+  for (std::size_t c = 0; c < seen.channels.size(); ++c)
+    result.push_back(
+        estimate_noise(residual[c], seen.time_s, seen.channels[c].bounds, start.empty() ? nullptr : &start[c]));
+  return result;
+}
+
+inline double log_likelihood(const Observations& seen, const Residuals& residual,
+                             const std::vector<ResidualNoise>& noise) {
+  double sum = 0;
+  for (std::size_t c = 0; c < residual.size(); ++c) sum += log_likelihood(noise[c], residual[c], seen.time_s);
+  return sum;
+}
+
+/// Fits all calibration parameters of `machine`, those of its effects included, by maximum a posteriori.
+///
+/// Levenberg-Marquardt on the whitened residual, the noise of each channel estimated anew after every step, so that the
+/// weights are those of a concentrated likelihood. Damping is in units of the prior. `machine` holds the means of the
+/// priors.
+inline MapFit map_fit(const Observations& seen, const ThermalNetwork& machine, const EffectLibrary& library,
+                      const FitOptions& options = {}) {
+  MapFit fit;
+  fit.prior = with_complete_effects(machine, library);
+  fit.parameters = calibration_parameters(fit.prior, library);
+  const Index n = static_cast<Index>(fit.parameters.size());
+  Vector low(n), high(n);
+  for (Index j = 0; j < n; ++j) std::tie(low(j), high(j)) = detail::coordinate_range(fit.parameter(j));
+  fit.t = options.start.size() == n ? options.start : Vector::Zero(n);
+  fit.t = fit.t.cwiseMax(low).cwiseMin(high);
+
+  const auto simulated_at = [&](const Vector& t) {
+    return simulate(fit.network_at(t), seen.excitations, library, fit.parameters);
+  };
+  fit.simulated = simulated_at(fit.t);
+  fit.residual = residuals_of(seen, fit.simulated);
+  fit.noise = noise_of(seen, fit.residual, options.noise);
+  const auto posterior = [&] { return log_likelihood(seen, fit.residual, fit.noise) - 0.5 * fit.t.squaredNorm(); };
+  fit.log_posterior = posterior();
+
+  double damping = 1e-2;
+  const Matrix identity = Matrix::Identity(n, n);
+  for (fit.iterations = 0; fit.iterations < options.most_iterations && !fit.converged; ++fit.iterations) {
+    const auto whiteners = whiteners_of(seen, fit.noise);
+    fit.equations = summed_equations(linearized(seen, fit.simulated, fit.slopes(), whiteners));
+    const NormalEquations total = fit.total();
+    const Matrix information = total.information + identity;
+    const Vector gradient = total.score - fit.t;
+    const double cost = total.squares + fit.t.squaredNorm();
+    bool accepted = false;
+    for (int attempt = 0; attempt < 8 && !accepted; ++attempt) {
+      const Vector step = detail::step_in_box(information + damping * identity, gradient, fit.t, low, high);
+      const Vector t = fit.t + step;
+      std::vector<Simulation> trial = simulated_at(t);
+      if (detail::all_finite(seen, trial)) {
+        Residuals residual = residuals_of(seen, trial);
+        if (detail::whitened_squares(residual, whiteners) + t.squaredNorm() < cost) {
+          fit.t = t;
+          fit.simulated = std::move(trial);
+          fit.residual = std::move(residual);
+          accepted = true;
+        }
+      }
+      damping = accepted ? std::max(damping / 5, 1e-7) : damping * 8;
+    }
+    if (accepted) fit.noise = noise_of(seen, fit.residual, fit.noise);
+    const double reached = posterior();
+    fit.converged = !accepted || reached - fit.log_posterior < options.tolerance;
+    fit.log_posterior = reached;
+  }
+  fit.equations = summed_equations(linearized(seen, fit.simulated, fit.slopes(), whiteners_of(seen, fit.noise)));
+  fit.log_likelihood = log_likelihood(seen, fit.residual, fit.noise);
+  fit.log_posterior = fit.log_likelihood - 0.5 * fit.t.squaredNorm();
+  const Eigen::LLT<Matrix> factor(fit.total().information + identity);
+  fit.log_evidence = fit.log_posterior - Matrix(factor.matrixL()).diagonal().array().log().sum();
+  return fit;
+}
+
+}  // namespace thermfit
