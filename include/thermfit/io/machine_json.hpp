@@ -128,10 +128,14 @@ class MachineReader {
     if (!object.json().is_object()) object.fail("not an object", "{column: {\"node\": name}}");
     for (const auto& [column, value] : object.json().items()) {
       const JsonNode sensor = object.at(column);
-      sensor.require_keys({"node", "offset_K"});
+      sensor.require_keys({"node", "offset_K", "placement"});
       const std::string node = sensor.at("node").text();
       const Index index = node == "ambient" ? ThermalNetwork::ambient_node : node_named(sensor.at("node"), node);
-      network_.sensors.push_back({column, index, sensor.has("offset_K") ? sensor.at("offset_K").number() : 0});
+      ThermalNetwork::Sensor& added = network_.sensors.emplace_back();
+      added.column = column;
+      added.node = index;
+      if (const auto offset = sensor.find("offset_K")) added.offset_K = offset->number();
+      if (const auto placement = sensor.find("placement")) added.placement = by_node(*placement);
     }
   }
 
@@ -144,14 +148,16 @@ class MachineReader {
   }
 
   void read_uncertainty(const JsonNode& node) {
-    node.require_keys({"capacity", "ambient", "conductance", "power", "um_per_K", "sensor_offset_K"});
+    node.require_keys(
+        {"capacity", "ambient", "conductance", "power", "um_per_K", "sensor_offset_K", "sensor_placement"});
     ThermalNetwork::Uncertainty& sd = network_.uncertainty;
     for (const auto& [key, target] : {std::pair<const char*, double*>{"capacity", &sd.capacity},
                                       {"ambient", &sd.ambient},
                                       {"conductance", &sd.conductance},
                                       {"power", &sd.power},
                                       {"um_per_K", &sd.um_per_K},
-                                      {"sensor_offset_K", &sd.sensor_offset_K}})
+                                      {"sensor_offset_K", &sd.sensor_offset_K},
+                                      {"sensor_placement", &sd.sensor_placement}})
       if (const auto value = node.find(key)) *target = value->number();
   }
 
@@ -245,15 +251,23 @@ inline Json machine_to_json(const ThermalNetwork& network) {
   for (const auto& sensor : network.sensors) {
     Json& entry = document["sensors"][sensor.column] = Json{{"node", name(sensor.node)}};
     if (sensor.offset_K != 0) entry["offset_K"] = sensor.offset_K;
+    std::vector<std::pair<Index, double>> moved;
+    for (const auto& share : sensor.placement)
+      if (share.second != 0) moved.push_back(share);
+    if (!moved.empty()) entry["placement"] = detail::by_node_json(network, moved);
   }
   using Start = ThermalNetwork::Initial::Rule;
   document["initial"] = network.initial.rule == Start::ambient    ? Json("ambient")
                         : network.initial.rule == Start::measured ? Json("measured")
                                                                   : detail::by_node_json(network, network.initial.degC);
   const ThermalNetwork::Uncertainty& sd = network.uncertainty;
-  document["uncertainty"] = {{"capacity", sd.capacity},       {"ambient", sd.ambient},
-                             {"conductance", sd.conductance}, {"power", sd.power},
-                             {"um_per_K", sd.um_per_K},       {"sensor_offset_K", sd.sensor_offset_K}};
+  document["uncertainty"] = {{"capacity", sd.capacity},
+                             {"ambient", sd.ambient},
+                             {"conductance", sd.conductance},
+                             {"power", sd.power},
+                             {"um_per_K", sd.um_per_K},
+                             {"sensor_offset_K", sd.sensor_offset_K},
+                             {"sensor_placement", sd.sensor_placement}};
   if (network.effects.empty()) return document;
   document["effects"] = Json::array();
   for (const auto& added : network.effects) {

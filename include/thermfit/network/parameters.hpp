@@ -16,11 +16,12 @@ namespace thermfit {
 /// Its working coordinate t is 0 at the prior's mean and counts prior standard deviations:
 /// value = mean exp(sd t) where `logarithmic`, else mean + sd t. So the prior of every t is N(0, 1).
 struct Parameter {
-  enum class Kind { capacity, ambient, conductance, power, expansion, sensor_offset, effect };
+  enum class Kind { capacity, ambient, conductance, power, expansion, sensor_offset, placement, effect };
   Kind kind = Kind::capacity;
   std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, effect
-  std::size_t part = 0;  ///< entry of the displacement's um_per_K, or parameter of the effect
-  std::string name;      ///< "capacity of head_front"
+  std::size_t part =
+      0;             ///< entry of the displacement's um_per_K or of the sensor's placement, or parameter of the effect
+  std::string name;  ///< "capacity of head_front"
   std::string unit;
   bool logarithmic = false;
   double mean = 0, sd = 1;
@@ -52,6 +53,8 @@ void visit_value(Network& network, const Parameter& parameter, Take take) {
       return take(network.displacements[parameter.item].um_per_K[parameter.part].second);
     case Kind::sensor_offset:
       return take(network.sensors[parameter.item].offset_K);
+    case Kind::placement:
+      return take(network.sensors[parameter.item].placement[parameter.part].second);
     case Kind::effect:
       return take(network.effects[parameter.item].parameters[parameter.part].second);
   }
@@ -77,6 +80,20 @@ inline ThermalNetwork with_complete_effects(ThermalNetwork network, const Effect
     }
     added.parameters = std::move(complete);
   }
+  return network;
+}
+
+/// The network with a share, zero at first, for every neighbour of every sensor's node, so that calibration can move
+/// it.
+inline ThermalNetwork with_placements(ThermalNetwork network) {
+  for (ThermalNetwork::Sensor& sensor : network.sensors)
+    for (const ThermalNetwork::Link& link : network.links) {
+      if (link.a != sensor.node && link.b != sensor.node) continue;
+      const Index neighbour = link.a == sensor.node ? link.b : link.a;
+      const bool known = std::any_of(sensor.placement.begin(), sensor.placement.end(),
+                                     [&](const auto& one) { return one.first == neighbour; });
+      if (!known) sensor.placement.emplace_back(neighbour, 0.0);
+    }
   return network;
 }
 
@@ -120,6 +137,13 @@ inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& netwo
     if (network.sensors[i].node >= 0)
       linear(Kind::sensor_offset, i, 0, "offset of " + network.sensors[i].column, "K", network.sensors[i].offset_K,
              sd.sensor_offset_K);
+  for (std::size_t i = 0; i < network.sensors.size(); ++i)
+    for (std::size_t k = 0; k < network.sensors[i].placement.size(); ++k) {
+      const auto [node, share] = network.sensors[i].placement[k];
+      linear(Kind::placement, i, k,
+             "placement of " + network.sensors[i].column + " towards " + nodes[static_cast<std::size_t>(node)].name, "",
+             share, sd.sensor_placement);
+    }
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     const ThermalNetwork::AddedEffect& added = network.effects[e];
     const std::vector<EffectParameter> own = effects.at(added.effect).parameters(network, added);

@@ -31,7 +31,11 @@ class Readings {
     for (Index s = 0; s < sensors_; ++s) {
       const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
       const bool air = sensor.node < 0;
-      values_(sample, s) = (air ? drive_.ambient(sample, time_s) : now.temperatures()(sensor.node)) + sensor.offset_K;
+      double degC = air ? drive_.ambient(sample, time_s) : now.temperatures()(sensor.node);
+      if (!air)
+        for (const auto& [neighbour, share] : sensor.placement)
+          degC += share * (now.temperatures()(neighbour) - now.temperatures()(sensor.node));
+      values_(sample, s) = degC + sensor.offset_K;
       if (system_.columns == 0) continue;
       auto row = tangents_.row(s * samples_ + sample);
       if (!air)
@@ -39,6 +43,9 @@ class Readings {
       else if (drive_.ambient_moves())
         row = drive_.ambient_tangent(sample, time_s);
       if (sensor.column >= 0) row(sensor.column) += 1;
+      for (std::size_t k = 0; k < sensor.placement_columns.size(); ++k)
+        if (const Column column = sensor.placement_columns[k]; column >= 0)
+          row(column) += now.temperatures()(sensor.placement[k].first) - now.temperatures()(sensor.node);
     }
   }
 

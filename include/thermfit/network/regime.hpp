@@ -97,9 +97,13 @@ class Regimes {
       links.col(static_cast<Index>(i)) = modes.col(pairs[i].first) - modes.col(pairs[i].second);
     const Index sensors = static_cast<Index>(system_.sensors.size());
     Matrix outputs = Matrix::Zero(n, sensors + static_cast<Index>(system_.displacements.size()));
-    for (Index s = 0; s < sensors; ++s)
-      if (const Index node = system_.sensors[static_cast<std::size_t>(s)].node; node >= 0)
-        outputs.col(s) = modes.col(node);
+    for (Index s = 0; s < sensors; ++s) {
+      const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
+      if (sensor.node < 0) continue;
+      outputs.col(s) = modes.col(sensor.node);
+      for (const auto& [neighbour, share] : sensor.placement)
+        outputs.col(s) += share * (modes.col(neighbour) - modes.col(sensor.node));
+    }
     for (std::size_t d = 0; d < system_.displacements.size(); ++d)
       for (const auto& [node, um_per_K] : system_.displacements[d].um_per_K)
         outputs.col(sensors + static_cast<Index>(d)) += um_per_K * modes.col(node);

@@ -71,9 +71,16 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
     system.sources.push_back({source.into, source.power_W, source.scale, source.exponent,
                               source.input == "constant" ? -1 : system.input(source.input), column(Kind::power, i)});
   }
-  for (std::size_t i = 0; i < network.sensors.size(); ++i)
-    system.sensors.push_back(
-        {network.sensors[i].node, network.sensors[i].offset_K, column(Kind::sensor_offset, i), {}});
+  for (std::size_t i = 0; i < network.sensors.size(); ++i) {
+    ThermalSystem::Sensor sensor;
+    sensor.node = network.sensors[i].node;
+    sensor.offset_K = network.sensors[i].offset_K;
+    sensor.column = column(Kind::sensor_offset, i);
+    sensor.placement = network.sensors[i].placement;
+    for (std::size_t k = 0; k < sensor.placement.size(); ++k)
+      sensor.placement_columns.push_back(column(Kind::placement, i, k));
+    system.sensors.push_back(std::move(sensor));
+  }
   for (std::size_t i = 0; i < network.displacements.size(); ++i) {
     ThermalSystem::Displacement output;
     output.zero_at_first_sample = network.displacements[i].zero_at_first_sample;

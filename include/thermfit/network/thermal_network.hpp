@@ -41,6 +41,9 @@ struct ThermalNetwork {
     std::string column;
     Index node = 0;       ///< ambient_node for a sensor in the air
     double offset_K = 0;  ///< reading = temperature of the node + offset
+    /// A sensor sits somewhere in the part that its node stands for: the reading gains share (theta_j - theta_node) for
+    /// each neighbour j. A negative share: on the far side of the node.
+    std::vector<std::pair<Index, double>> placement;
   };
   struct Ambient {
     enum class Rule {
@@ -66,6 +69,7 @@ struct ThermalNetwork {
   struct Uncertainty {
     double capacity = 0.3, ambient = 0.3, conductance = 0.3, power = 0.3, um_per_K = 0.3;
     double sensor_offset_K = 0.5;
+    double sensor_placement = 0.25;  ///< of each share
   };
   /// An effect of the catalogue that was added: its law is looked up by name, see effects/effect.hpp.
   struct AddedEffect {

@@ -80,6 +80,8 @@ class ThermalSystem {
     Index node = 0;
     double offset_K = 0;
     Column column = -1;
+    std::vector<std::pair<Index, double>> placement;  ///< neighbour and share
+    std::vector<Column> placement_columns;
     std::vector<BoundLaw> laws;
   };
   struct Displacement {
