@@ -43,7 +43,7 @@ struct ThermalNetwork {
     double offset_K = 0;  ///< reading = temperature of the node + offset
     /// A sensor sits somewhere in the part that its node stands for: the reading gains share (theta_j - theta_node) for
     /// each neighbour j. A negative share: on the far side of the node.
-    std::vector<std::pair<Index, double>> placement;
+    std::vector<std::pair<Index, double>> placement{};
   };
   struct Ambient {
     enum class Rule {
