@@ -16,11 +16,14 @@ inline std::string batch_digest(const Batch& batch) {
   std::string bytes;
   const auto add = [&](const std::string& name, const auto& values) {
     bytes.assign(name).push_back('\0');
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + 8 * static_cast<std::size_t>(values.size()));
+    char* to = bytes.data() + begin;
     for (Index row = 0; row < values.size(); ++row) {
       std::uint64_t bits;
       const double value = values(row) + 0.0;  // -0 counts as 0
       std::memcpy(&bits, &value, sizeof bits);
-      for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<char>(bits >> shift));
+      for (int shift = 0; shift < 64; shift += 8) *to++ = static_cast<char>(bits >> shift);
     }
     digest.update(bytes);
   };

@@ -18,6 +18,7 @@ struct CsvRoles {
   std::vector<std::string> temperatures, errors, inputs;
   std::vector<std::string> ignored;    ///< text, empty, or not asked for
   std::vector<std::string> converted;  ///< "T1 from degF"
+  bool assumed_minutes = false;        ///< nobody said what the clock counts
 };
 
 namespace detail {
@@ -248,6 +249,7 @@ class LayoutMaker {
         unit != options_.time_unit)
       throw Error(place_of(c), column(c).title + " says " + unit + ", --time-unit says " + options_.time_unit,
                   "one unit for a column");
+    layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
     if (unit.empty()) unit = options_.time_unit.empty() ? "min" : options_.time_unit;
     set_unit(slot, c, Quantity::time, unit);
   }

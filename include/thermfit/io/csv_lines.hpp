@@ -16,14 +16,24 @@ inline std::string place(const std::string& name, std::size_t line, std::size_t 
   return column == 0 ? text : text + ':' + std::to_string(column);
 }
 
+/// Blank lines and comments (`#` first) carry no data.
+inline bool is_content(std::string_view line) {
+  for (const char c : line) {
+    if (c == ' ' || c == '\t' || c == '\r') continue;
+    return c != '#';
+  }
+  return false;
+}
+
 /// The lines of a file, read in blocks: constant memory, whatever the size of the file. Refuses at once what is no
 /// text: other encodings, workbooks, NUL bytes, lone carriage returns, endless lines.
 class CsvLines {
  public:
   CsvLines(const std::string& path, std::size_t max_line_bytes)
       : source_(path), max_line_bytes_(max_line_bytes), buffer_(block_bytes) {
-    while (end_ < head_bytes && fill()) {
+    while ((end_ < head_bytes || (!holds_two_content_lines() && end_ < 2 * max_line_bytes_)) && fill()) {
     }
+    if (!at_end_ && text().find('\n') == std::string_view::npos) refuse_long(end_);
     if (text().substr(0, 3) == "\xEF\xBB\xBF") {
       begin_ = 3;
       bom_ = true;
@@ -47,7 +57,8 @@ class CsvLines {
     const std::string_view all = text();
     if (at_end_ || all.size() < head_bytes) return all;
     const std::size_t last = all.rfind('\n', head_bytes);
-    return last == std::string_view::npos ? all : all.substr(0, last + 1);
+    const std::string_view lines = all.substr(0, last + 1);
+    return last != std::string_view::npos && content_lines(lines) > 1 ? lines : all.substr(0, all.rfind('\n') + 1);
   }
 
   /// The next line without its end; false behind the last. The view holds until the next call.
@@ -59,14 +70,13 @@ class CsvLines {
         feed = static_cast<const char*>(std::memchr(rest.data() + searched, '\n', rest.size() - searched));
       if (feed || at_end_) break;
       searched = rest.size();
-      if (searched > max_line_bytes_)
-        throw Error(place(name(), line_number_ + 1), "a line longer than " + std::to_string(max_line_bytes_) + " bytes",
-                    "lines of a table", "is this the right file?");
+      refuse_long(searched);
       fill();
     }
     const std::string_view rest = text();
     if (rest.empty()) return false;
     const std::size_t size = feed ? static_cast<std::size_t>(feed - rest.data()) : rest.size();
+    refuse_long(size);
     begin_ += size + (feed ? 1 : 0);
     line = rest.substr(0, size);
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -77,6 +87,21 @@ class CsvLines {
  private:
   static constexpr std::size_t block_bytes = std::size_t{1} << 18;
   static constexpr std::size_t head_bytes = std::size_t{1} << 16;
+
+  void refuse_long(std::size_t size) const {
+    if (size > max_line_bytes_)
+      throw Error(place(name(), line_number_ + 1), "a line longer than " + std::to_string(max_line_bytes_) + " bytes",
+                  "lines of a table", "is this the right file?");
+  }
+
+  static std::size_t content_lines(std::string_view lines) {
+    std::size_t count = 0;
+    for (std::size_t end; count < 2 && (end = lines.find('\n')) != std::string_view::npos; lines.remove_prefix(end + 1))
+      count += is_content(lines.substr(0, end));
+    return count;
+  }
+
+  bool holds_two_content_lines() const { return content_lines(text()) > 1; }
 
   std::string_view text() const { return {buffer_.data() + begin_, end_ - begin_}; }
 
@@ -119,14 +144,5 @@ class CsvLines {
   std::size_t line_number_ = 0;
   bool at_end_ = false, bom_ = false, crlf_ = false;
 };
-
-/// Blank lines and comments (`#` first) carry no data.
-inline bool is_content(std::string_view line) {
-  for (const char c : line) {
-    if (c == ' ' || c == '\t' || c == '\r') continue;
-    return c != '#';
-  }
-  return false;
-}
 
 }  // namespace thermfit::detail

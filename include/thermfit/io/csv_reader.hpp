@@ -54,7 +54,8 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     std::vector<std::string> others = roles.inputs;
     others.insert(others.end(), roles.ignored.begin(), roles.ignored.end());
     problems.add(Error(reader.file().path, "no temperature point", "T1, T2, … or the names given by --temperatures",
-                       "columns there are: " + name_list(others)));
+                       others.size() == 1 ? "one column only: is the separator another? --delimiter says which"
+                                          : "columns there are: " + name_list(others)));
     return;
   }
   const std::size_t width = roles.temperatures.size() + roles.errors.size() + roles.inputs.size();
@@ -160,6 +161,7 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
   };
   for (const CsvFile& file : files) {
     if (!file.dialect.is_plain()) add(file, file.dialect.description());
+    if (file.roles.assumed_minutes) add(file, file.roles.time + " names no unit: minutes (--time-unit tells another)");
     if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
     if (!file.roles.ignored.empty() && !options.inputs)
       add(file, "left out, no numbers: " + name_list(file.roles.ignored));

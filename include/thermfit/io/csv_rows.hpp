@@ -49,6 +49,7 @@ class CsvRowReader {
             .make();
     file_.roles = layout_.roles;
     values_.resize(layout_.roles.temperatures.size() + layout_.roles.errors.size() + layout_.roles.inputs.size());
+    all_rows_ragged_ = no_row_fits(evidence, header);
     std::string_view line;
     for (std::size_t taken = 0; taken < header.content_lines && lines_.next(line);) taken += detail::is_content(line);
   }
@@ -96,6 +97,14 @@ class CsvRowReader {
     DateTime origin{};
     std::vector<double> held;
   };
+
+  bool no_row_fits(const detail::CsvEvidence& evidence, const detail::CsvHeader& header) {
+    for (std::size_t i = header.content_lines; i < evidence.lines.size(); ++i)
+      if (detail::split_line(evidence.lines[i].text, file_.dialect.separator, fields_) ||
+          fields_.size() == layout_.slots.size())
+        return false;
+    return evidence.lines.size() > header.content_lines + 1;
+  }
 
   std::string here(std::size_t column = 0) const { return detail::place(file_.path, lines_.line_number(), column); }
   const std::string& name_of(std::size_t field) const { return layout_.columns[field].name; }
@@ -145,6 +154,7 @@ class CsvRowReader {
       return false;
     }
     if (fields_.size() != layout_.slots.size()) {
+      if (all_rows_ragged_) throw ragged();  // said once
       problems_.add(ragged());
       return false;
     }
@@ -187,8 +197,9 @@ class CsvRowReader {
 
   Error ragged() const {
     const std::size_t found = fields_.size(), wanted = layout_.columns.size();
-    const std::string count = std::to_string(found) + (found == 1 ? " field" : " fields") + " under " +
-                              std::to_string(wanted) + (wanted == 1 ? " name" : " names");
+    const std::string count = std::string(all_rows_ragged_ ? "in every row " : "") + std::to_string(found) +
+                              (found == 1 ? " field" : " fields") + " under " + std::to_string(wanted) +
+                              (wanted == 1 ? " name" : " names");
     if (found < wanted)
       return Error(
           here(), count + ": " + name_of(found) + (found + 1 < wanted ? " and what follows are" : " is") + " not there",
@@ -336,6 +347,7 @@ class CsvRowReader {
   std::map<std::string, State> states_;
   State* state_ = nullptr;
   std::size_t seen_rows_ = 0;
+  bool all_rows_ragged_ = false;
 };
 
 /// Hands each row of a file to `row`, in constant memory; `begin` hears first what the columns mean. Rows with problems
