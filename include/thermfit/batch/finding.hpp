@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// What can be wrong with a measured batch before anything is fitted to it.
+enum class FindingRule {
+  time_gap,   ///< samples are missing: a time step far longer than the usual one
+  time_back,  ///< time repeats or goes back
+  missing,    ///< cells without a value
+  constant,   ///< a temperature or thermal error that never moves
+  stuck,      ///< one value for many rows, while other channels say that it should have moved
+  saturated,  ///< the same, at the largest or smallest value of a thermal error
+  stale,      ///< a thermal error that is read less often than it is written down
+  spike,      ///< a reading, or a few, far off those before and after
+  jump,       ///< a lasting step between two rows that no input explains
+  collinear,  ///< a temperature that others give to less than their resolution: a copy or a computed channel
+  unit        ///< values that hint at another unit
+};
+
+/// The rule's name in tables and JSON.
+inline std::string_view rule_name(FindingRule rule) {
+  constexpr std::string_view names[] = {"time-gap", "time-back", "missing", "constant",  "stuck", "saturated",
+                                        "stale",    "spike",     "jump",    "collinear", "unit"};
+  return names[static_cast<int>(rule)];
+}
+
+/// One fault of one channel of a batch.
+struct Finding {
+  FindingRule rule;
+  std::string channel;  ///< name of the channel; `time` for the clock
+  Index first_row = 0;  ///< rows of the batch, from 0, both included
+  Index last_row = 0;
+  double figure = 0;  ///< what was measured …
+  double limit = 0;   ///< … and what the rule allows, in `unit`
+  std::string unit;
+  std::string note;  ///< what it means, in a few words
+};
+
+}  // namespace thermfit

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/batch/finding.hpp"
+#include "thermfit/batch/series_scale.hpp"
+
+namespace thermfit {
+
+namespace detail {
+
+/// Readings first … last of a series that are all the same.
+struct EqualRun {
+  std::size_t first, last;
+  std::size_t length() const { return last - first + 1; }
+};
+
+inline std::vector<EqualRun> equal_runs(const std::vector<double>& values) {
+  std::vector<EqualRun> runs;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i == 0 || values[i] != values[i - 1])
+      runs.push_back({i, i});
+    else
+      runs.back().last = i;
+  }
+  return runs;
+}
+
+/// How far the other temperatures say that a channel moved within rows first … last: least squares outside these rows
+/// (a little ridge, since thermometers are collinear), used inside. Range of the prediction and residual scatter.
+struct ExpectedMove {
+  double range = 0, scatter = 0;
+};
+
+inline std::optional<ExpectedMove> expected_move(const Matrix& others, const Eigen::Ref<const Vector>& channel,
+                                                 Index first, Index last) {
+  std::vector<Index> outside;
+  for (Index row = 0; row < channel.size(); ++row)
+    if ((row < first || row > last) && std::isfinite(channel(row)) && others.row(row).allFinite())
+      outside.push_back(row);
+  const Index columns = others.cols(), count = static_cast<Index>(outside.size());
+  if (columns == 0 || count < columns + 8) return std::nullopt;
+  Matrix design(count, columns);
+  Vector target(count);
+  for (Index i = 0; i < count; ++i) {
+    design.row(i) = others.row(outside[static_cast<std::size_t>(i)]);
+    target(i) = channel(outside[static_cast<std::size_t>(i)]);
+  }
+  const Eigen::RowVectorXd means = design.colwise().mean();
+  design.rowwise() -= means;
+  target.array() -= target.mean();
+  Matrix normal = design.transpose() * design;
+  normal.diagonal().array() += 1e-4 * normal.trace() / static_cast<double>(columns) + 1e-30;
+  const Vector weights = normal.ldlt().solve(design.transpose() * target);
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (Index row = first; row <= last; ++row) {
+    if (!others.row(row).allFinite()) continue;
+    const double predicted = (others.row(row) - means).dot(weights);
+    low = std::min(low, predicted);
+    high = std::max(high, predicted);
+  }
+  if (low > high) return std::nullopt;
+  return ExpectedMove{high - low,
+                      std::sqrt((target - design * weights).squaredNorm() / static_cast<double>(count - columns))};
+}
+
+inline Matrix without_column(const Matrix& matrix, Index column) {
+  Matrix others(matrix.rows(), matrix.cols() - 1);
+  others.leftCols(column) = matrix.leftCols(column);
+  others.rightCols(others.cols() - column) = matrix.rightCols(others.cols() - column);
+  return others;
+}
+
+}  // namespace detail
+
+/// The longest run of one value that cannot be what it seems, or nothing.
+///
+/// A run of five rows or more is suspicious when the other temperatures say that the channel moved by more than four
+/// steps of its resolution and six times the scatter of that prediction; a run of eight or more also when the channel's
+/// own noise makes it improbable (less than one in a million in the whole batch). The three longest runs are judged; one
+/// at the start of the batch from ten rows on, since a point far from the heat begins late.
+inline std::optional<Finding> frozen_finding(const Batch& batch, Index column, bool is_error, const Series& series,
+                                             const SeriesScale& scale) {
+  const Channels& channels = is_error ? batch.errors : batch.temperatures;
+  const std::string unit = is_error ? "um" : "K";
+  std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
+  std::stable_sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.length() > b.length(); });
+  if (runs.size() > 3) runs.resize(3);
+  // Two normal readings fall on the same step of the resolution with probability resolution / (2 sqrt(pi) noise).
+  const double same = scale.noise > 0 ? std::min(1.0, scale.resolution / (2 * std::sqrt(M_PI) * scale.noise)) : 1;
+  for (const detail::EqualRun& run : runs) {
+    if (run.length() < 5) break;
+    if (run.first == 0 && run.length() < 10) continue;
+    const Index first = series.rows[run.first], last = series.rows[run.last];
+    const bool improbable = run.length() >= 8 && static_cast<double>(run.length() - 1) * std::log(same) <
+                                                     std::log(1e-6 / static_cast<double>(series.size()));
+    const Matrix& temperatures = batch.temperatures.values;
+    const auto move = detail::expected_move(is_error ? temperatures : detail::without_column(temperatures, column),
+                                            channels.values.col(column), first, last);
+    const double limit = move ? std::max(4 * scale.resolution, 6 * move->scatter) : 0;
+    const bool moved = move && move->range > limit;
+    if (!improbable && !moved) continue;
+    const double value = series.values[run.first];
+    const bool at_end = value == scale.highest || value == scale.lowest;
+    const FindingRule rule = is_error && at_end ? FindingRule::saturated : FindingRule::stuck;
+    const std::string rows = std::to_string(run.length()) + " rows of one value";
+    const std::string& name = channels.names[static_cast<std::size_t>(column)];
+    if (moved)
+      return Finding{rule, name, first, last, move->range, limit, unit, rows + "; by the other points it moved"};
+    return Finding{rule, name, first, last, 0, scale.noise, unit, rows + "; its noise elsewhere rules that out"};
+  }
+  return std::nullopt;
+}
+
+/// A thermal error in steps: half of the readings or more repeat the one before, the others step by three times the
+/// resolution or more, and seven of ten runs have the same length.
+inline std::optional<Finding> stale_finding(const Series& series, const SeriesScale& scale, const std::string& name) {
+  const std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
+  if (2 * runs.size() > series.size() + 1 || runs.size() < 4) return std::nullopt;
+  std::map<std::size_t, std::size_t> lengths;
+  for (const detail::EqualRun& run : runs) ++lengths[run.length()];
+  const auto common = std::max_element(lengths.begin(), lengths.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<double> steps;
+  for (std::size_t r = 1; r < runs.size(); ++r)
+    steps.push_back(std::abs(series.values[runs[r].first] - series.values[runs[r - 1].first]));
+  const double step = median(steps), limit = 3 * scale.resolution;
+  if (common->first < 2 || 10 * common->second < 7 * runs.size() || step < limit) return std::nullopt;
+  return Finding{FindingRule::stale,
+                 name,
+                 series.rows.front(),
+                 series.rows.back(),
+                 step,
+                 limit,
+                 "um",
+                 "new only every " + std::to_string(common->first) + " rows: read less often than written"};
+}
+
+}  // namespace thermfit

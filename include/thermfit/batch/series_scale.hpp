@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// Median of `values`, the mean of the middle two for an even count; NaN of none. Takes a copy to sort.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return std::nan("");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+/// The readings of a channel that there are, and the rows they are from.
+struct Series {
+  std::vector<double> values;
+  std::vector<Index> rows;
+
+  explicit Series(const Eigen::Ref<const Vector>& column) {
+    for (Index row = 0; row < column.size(); ++row)
+      if (std::isfinite(column(row))) {
+        values.push_back(column(row));
+        rows.push_back(row);
+      }
+  }
+  std::size_t size() const { return values.size(); }
+};
+
+/// How finely a channel is written down and how much it shakes.
+struct SeriesScale {
+  double lowest = 0, highest = 0;
+  double resolution = 0;  ///< smallest difference between two of its values; 0 for a constant channel
+  double noise = 0;       ///< standard deviation, from the median absolute second difference; blind to drift and steps
+
+  double range() const { return highest - lowest; }
+  /// The larger of the noise and what rounding alone does.
+  double shake() const { return std::max(noise, resolution / std::sqrt(12.0)); }
+};
+
+/// Scale of a series. Second differences of white noise have 6 times its variance; the median absolute value of a
+/// normal variable is 0.6745 of its standard deviation.
+inline SeriesScale series_scale(const Series& series) {
+  SeriesScale scale;
+  if (series.size() == 0) return scale;
+  std::vector<double> sorted = series.values;
+  std::sort(sorted.begin(), sorted.end());
+  scale.lowest = sorted.front();
+  scale.highest = sorted.back();
+  const double rounding = 1e-9 * std::max({scale.range(), std::abs(scale.lowest), std::abs(scale.highest)});
+  double smallest = scale.range();
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] - sorted[i - 1] > rounding) smallest = std::min(smallest, sorted[i] - sorted[i - 1]);
+  scale.resolution = smallest;
+  std::vector<double> second;
+  for (std::size_t i = 1; i + 1 < series.size(); ++i)
+    second.push_back(std::abs(series.values[i - 1] - 2 * series.values[i] + series.values[i + 1]));
+  scale.noise = second.empty() ? 0 : median(std::move(second)) / 0.6745 / std::sqrt(6.0);
+  return scale;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "cli/campaign_options.hpp"
+#include "cli/command.hpp"
+#include "report/check_report.hpp"
+#include "thermfit/batch/findings.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+constexpr const char* details =
+    R"(Reads batches and says what is suspicious about them before anything is fitted. An
+overview gives rows, duration, usual time step and ranges; then each finding has
+its rows, a figure, and the limit of the rule that it breaks:
+
+  time-gap    a time step of more than three times the usual one
+  time-back   time that repeats or goes back
+  missing     cells without a value
+  constant    a temperature or thermal error that never moves
+  stuck       one value for many rows, while other points say that it moved
+  saturated   the same, at the largest or smallest thermal error
+  stale       a thermal error that is read less often than it is written down
+  spike       a reading, or a few, far off those before and after
+  jump        a lasting step that no known input explains
+  collinear   a point that others give more closely than rounding allows
+  unit        values that make sense in another unit only
+
+Limits are multiples of each channel's own noise and resolution. Rows count from 1
+at the first row of the batch. What cannot be read at all is an error, told with
+file:line:column. Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";
+
+std::vector<Option> options() {
+  std::vector<Option> all{{"--json", "", "machine-readable result, thermfit-check/1", 0, false},
+                          {"--output", "FILE", "write the result there instead of to stdout", 'o', false}};
+  for (Option& option : campaign_options()) all.push_back(std::move(option));
+  return all;
+}
+
+Exit run(const Arguments& arguments, Console& console) {
+  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  CsvOptions reading = csv_options(arguments);
+  if (!arguments.has("--missing")) reading.missing = MissingValues::keep;
+  reading.increasing_time = false;
+  std::vector<CheckedBatch> checked;
+  for (Batch& batch : read_files(reading, console, arguments.positionals()).batches) {
+    std::vector<Finding> findings = find_faults(batch);
+    checked.push_back({std::move(batch), std::move(findings)});
+  }
+  console.print(arguments.has("--json") ? check_json(checked) : check_text(checked));
+  const bool clean = std::all_of(checked.begin(), checked.end(), [](const auto& one) { return one.findings.empty(); });
+  return clean ? Exit::done : Exit::negative;
+}
+
+}  // namespace
+
+Command check_command() {
+  return {"check",
+          "find faults in batches before fitting: gaps, stuck sensors, spikes, units",
+          "BATCH.csv …",
+          details,
+          options(),
+          {{"thermfit check data/vcenter55", "the campaign that ships with thermfit: nothing is found"},
+           {"thermfit check --json data/vcenter55/K01.csv", "the same for one batch, for a program"}},
+          run};
+}
+
+}  // namespace thermfit::cli
