@@ -84,10 +84,10 @@ char decimal_mark(const Arguments& arguments) {
 
 std::vector<Option> campaign_options() {
   return {
-      {"--temperatures", "NAME,…", "temperature points; a name may be a glob such as 'PT*' (default: T1, T2, …)", 0,
-       true},
-      {"--errors", "NAME,…", "thermal errors (default: those of X, Y, Z that there are)", 0, true},
-      {"--inputs", "NAME,…", "known inputs (default: every other column of numbers); 'none' reads no inputs", 0, true},
+      {"--temperatures", "NAMES",
+       "temperature points, comma-separated; a name may be a glob such as 'PT*' (default: T1, T2, …)", 0, true},
+      {"--errors", "NAMES", "thermal errors (default: those of X, Y, Z that there are)", 0, true},
+      {"--inputs", "NAMES", "known inputs (default: every other column of numbers; none: none", 0, true},
       {"--time-column", "NAME",
        "the clock, or 'none' (default: time_s, time_min, time_h, Time, time, t, or the column "
        "of ISO 8601 date-times)",
@@ -98,7 +98,7 @@ std::vector<Option> campaign_options() {
        "missing values: error, drop (leave the row out), hold (repeat the last) (default: error)", 0, false},
       {"--delimiter", "MARK", "comma, semicolon, tab or bar (default: from the file)", 0, false},
       {"--decimal", "MARK", "point or comma (default: from the file)", 0, false},
-      {"--columns", "NAME,…", "names of the columns of files without a header line", 0, true},
+      {"--columns", "NAMES", "names of the columns of files without a header line", 0, true},
       {"--max-errors", "N", "problems told of before giving up (default: 20)", 0, false},
   };
 }

@@ -5,6 +5,7 @@ namespace thermfit::cli {
 const std::vector<Command>& all_commands() {
   static const std::vector<Command> commands{
       // clang-format off: one a line, in the order of the work
+      check_command(),
       inspect_command(),
       // clang-format on
   };

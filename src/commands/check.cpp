@@ -1,17 +1,15 @@
 #include <algorithm>
 
 #include "cli/campaign_options.hpp"
-#include "cli/command.hpp"
+#include "commands/commands.hpp"
 #include "report/check_report.hpp"
 #include "thermfit/batch/findings.hpp"
 
 namespace thermfit::cli {
 namespace {
 
-constexpr const char* details =
-    R"(Reads batches and says what is suspicious about them before anything is fitted. An
-overview gives rows, duration, usual time step and ranges; then each finding has
-its rows, a figure, and the limit of the rule that it breaks:
+const char* const details =
+    R"(Reads batches and says what is suspicious about them before anything is fitted. An overview gives rows, duration, usual time step and ranges; then each finding has its rows, a figure, and the limit of the rule that it breaks:
 
   time-gap    a time step of more than three times the usual one
   time-back   time that repeats or goes back
@@ -25,14 +23,17 @@ its rows, a figure, and the limit of the rule that it breaks:
   collinear   a point that others give more closely than rounding allows
   unit        values that make sense in another unit only
 
-Limits are multiples of each channel's own noise and resolution. Rows count from 1
-at the first row of the batch. What cannot be read at all is an error, told with
-file:line:column. Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";
+Limits are multiples of each channel's own noise and resolution. Rows count from 1 at the first row of the batch. What cannot be read at all is an error, told with file:line:column.
+Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";
 
 std::vector<Option> options() {
   std::vector<Option> all{{"--json", "", "machine-readable result, thermfit-check/1", 0, false},
                           {"--output", "FILE", "write the result there instead of to stdout", 'o', false}};
-  for (Option& option : campaign_options()) all.push_back(std::move(option));
+  for (Option& option : campaign_options()) {
+    if (option.name == "--missing")
+      option.help = "drop or hold missing values before the checks (default: report them)";
+    all.push_back(std::move(option));
+  }
   return all;
 }
 

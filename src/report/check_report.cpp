@@ -117,7 +117,8 @@ std::string check_text(const std::vector<CheckedBatch>& checked) {
   }
   std::string text = overview.text() + '\n';
   if (findings > 0) text += table.text() + '\n' + notes + '\n';
-  return text + plural(findings, "finding", "findings") + (findings > 0 ? " in " + std::to_string(faulty) + " of " : " in ") +
+  return text + plural(findings, "finding", "findings") +
+         (findings > 0 ? " in " + std::to_string(faulty) + " of " : " in ") +
          plural(checked.size(), "batch", "batches") + '\n';
 }
 

@@ -84,8 +84,8 @@ inline Matrix without_column(const Matrix& matrix, Index column) {
 ///
 /// A run of five rows or more is suspicious when the other temperatures say that the channel moved by more than four
 /// steps of its resolution and six times the scatter of that prediction; a run of eight or more also when the channel's
-/// own noise makes it improbable (less than one in a million in the whole batch). The three longest runs are judged; one
-/// at the start of the batch from ten rows on, since a point far from the heat begins late.
+/// own noise makes it improbable (less than one in a million in the whole batch). The three longest runs are judged;
+/// one at the start of the batch from ten rows on, since a point far from the heat begins late.
 inline std::optional<Finding> frozen_finding(const Batch& batch, Index column, bool is_error, const Series& series,
                                              const SeriesScale& scale) {
   const Channels& channels = is_error ? batch.errors : batch.temperatures;

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit::detail {
 

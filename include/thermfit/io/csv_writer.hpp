@@ -3,7 +3,7 @@
 #include <string>
 
 #include "thermfit/batch/batch.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 
