@@ -1,0 +1,118 @@
+#pragma once
+
+/// Runs the diagnosis of many cases, two at once at most, and keeps every document so that a broken run resumes.
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+
+#include "mark.hpp"
+#include "thermfit/io/atomic_file.hpp"
+#include "thermfit/number.hpp"
+
+namespace blind {
+
+namespace fs = std::filesystem;
+
+inline std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+inline std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+inline std::vector<fs::path> batches_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".csv") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// How to call the diagnosis and where to keep what it says.
+struct Runner {
+  std::string program;                 ///< the thermfit command, or a baseline
+  std::vector<std::string> arguments;  ///< before the machine: `diagnose`, or the baseline's name
+  fs::path results;
+  int seconds_allowed = 120;
+
+  /// The document for one case, from `results` when it is newer than the program and the case; nothing on failure.
+  std::optional<Json> document(const Case& one, const std::string& what, const std::vector<std::string>& options,
+                               double& seconds) const {
+    const fs::path kept = results / (one.name + what + ".json"), clock = results / (one.name + what + ".seconds");
+    const auto newer = [&](const fs::path& than) { return fs::last_write_time(kept) > fs::last_write_time(than); };
+    if (!(fs::exists(kept) && fs::exists(clock) && newer(program) && newer(one.folder / "machine.json"))) {
+      fs::create_directories(results);
+      const fs::path fresh = kept.string() + ".part";
+      std::string line = "timeout " + std::to_string(seconds_allowed) + " " + quoted(program);
+      for (const std::string& word : arguments) line += " " + quoted(word);
+      line += " " + quoted((one.folder / "machine.json").string());
+      for (const fs::path& file : batches_in(one.folder / "real")) line += " " + quoted(file.string());
+      line += " --json";
+      for (const std::string& word : options) line += " " + quoted(word);
+      line += " > " + quoted(fresh.string()) + " 2> " + quoted((results / (one.name + what + ".err")).string());
+      const auto before = std::chrono::steady_clock::now();
+      const int status = std::system(line.c_str());
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - before;
+      // Exit 1 is an answer (a gap without a name); anything above is none.
+      if (status == -1 || !WIFEXITED(status) || WEXITSTATUS(status) > 1) return std::nullopt;
+      thermfit::write_atomically(clock.string(), thermfit::fixed_text(took.count(), 3) + "\n");
+      fs::rename(fresh, kept);
+    }
+    std::ifstream time(clock);
+    std::string text;
+    std::getline(time, text);
+    seconds = thermfit::parse_number(text).value_or(NAN);
+    try {
+      return read_json(kept);
+    } catch (const std::exception&) {
+      return std::nullopt;
+    }
+  }
+
+  Mark judged(const Case& one, bool with_oracle) const {
+    std::vector<std::string> options;
+    if (!one.truth.without.empty()) options = {"--without", joined(one.truth.without, ",")};
+    double seconds = NAN, ignored;
+    Mark mark;
+    mark.failed = true;
+    if (const auto found = document(one, "", options, seconds)) {
+      try {
+        mark = blind::mark(one.truth, *found);
+      } catch (const std::exception& error) {
+        mark.said = error.what();
+      }
+    }
+    mark.seconds = seconds;
+    if (with_oracle && !one.truth.effects.empty() && one.truth.detectable()) {
+      std::vector<std::string> names;
+      for (const TrueEffect& effect : one.truth.effects) names.push_back(effect.names.front());
+      if (const auto found = document(one, ".oracle", {"--effects", joined(names, ",")}, ignored))
+        mark.oracle_shrink_percent = number_or_nan(found->value("gap", Json::object()), "shrink_percent");
+    }
+    return mark;
+  }
+};
+
+/// Marks in the order of the cases; `jobs` at a time; `after` hears of each as it comes.
+inline std::vector<Mark> judge_all(const std::vector<Case>& cases, const Runner& runner, bool with_oracle, int jobs,
+                                   const std::function<void(std::size_t done)>& after) {
+  std::vector<Mark> marks(cases.size());
+  std::atomic<std::size_t> next{0}, done{0};
+  std::vector<std::thread> workers;
+  for (int job = 0; job < jobs; ++job)
+    workers.emplace_back([&] {
+      for (std::size_t i; (i = next++) < cases.size(); after(++done)) marks[i] = runner.judged(cases[i], with_oracle);
+    });
+  for (std::thread& worker : workers) worker.join();
+  return marks;
+}
+
+}  // namespace blind

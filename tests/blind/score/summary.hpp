@@ -1,0 +1,157 @@
+#pragma once
+
+/// The figures of a scored set and the table that shows them.
+
+#include <map>
+#include <numeric>
+
+#include "cli/table.hpp"
+#include "mark.hpp"
+#include "thermfit/number.hpp"
+
+namespace blind {
+
+/// `right` of `of`.
+struct Share {
+  int right = 0, of = 0;
+  void add(bool is_right) { right += is_right, ++of; }
+  double value() const { return of ? static_cast<double>(right) / of : NAN; }
+  std::string text() const { return of ? std::to_string(right) + "/" + std::to_string(of) : "-"; }
+};
+
+inline double median(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : .5 * (values[half - 1] + values[half]);
+}
+
+/// Mean over five equal bins of |mean confidence - share right|, weighted by the claims in each.
+inline double calibration_error(const std::vector<Claim>& claims) {
+  double error = 0;
+  for (int bin = 0; bin < 5; ++bin) {
+    double confidence = 0, right = 0;
+    for (const Claim& claim : claims) {
+      if (std::min(4, static_cast<int>(claim.confidence * 5)) != bin) continue;
+      confidence += claim.confidence;
+      right += claim.right;
+    }
+    error += std::abs(confidence - right) / static_cast<double>(claims.size());
+  }
+  return claims.empty() ? NAN : error;
+}
+
+struct Summary {
+  Share top, in_set, place, pair_top, unknown, none_right, miscalibration_right, hidden_honest;
+  Share false_alarm_none, false_alarm_miscalibration, coverage, confident_wrong, harm;
+  std::vector<double> against_oracle, shrinks, seconds;
+  std::vector<Claim> claims;
+  int failed = 0;
+  std::map<std::string, std::array<Share, 5>> by_family;  ///< detectable, top, set, place, verdict
+
+  void add(const Truth& truth, const Mark& mark) {
+    if (mark.failed) ++failed;
+    auto& [seen, first, set, at, verdict] = by_family[truth.effects.size() > 1 ? "pairs" : truth.family];
+    seen.add(truth.detectable());
+    verdict.add(mark.verdict_right);
+    if (std::isfinite(mark.seconds)) seconds.push_back(mark.seconds);
+    confident_wrong.add(mark.confident_wrong);
+    claims.insert(claims.end(), mark.claims.begin(), mark.claims.end());
+    if (truth.verdict == "none") {
+      none_right.add(mark.verdict_right);
+      false_alarm_none.add(mark.failed || mark.named || mark.verdict == "unknown");
+    } else if (truth.verdict == "miscalibration") {
+      miscalibration_right.add(mark.verdict_right);
+      false_alarm_miscalibration.add(mark.failed || mark.named || mark.verdict == "unknown");
+    } else if (truth.verdict == "unknown") {
+      unknown.add(mark.verdict_right);
+    } else if (!truth.detectable()) {
+      hidden_honest.add(!mark.failed && !mark.confident_wrong);
+    } else if (truth.poor) {
+      // One speed: naming the group that holds the truth is all that can be asked.
+      hidden_honest.add(!mark.failed && !mark.confident_wrong);
+      in_set.add(mark.in_set);
+    } else {
+      (truth.effects.size() > 1 ? pair_top : top).add(mark.top);
+      in_set.add(mark.in_set);
+      if (mark.in_set) place.add(mark.place);
+      first.add(mark.top);
+      set.add(mark.in_set);
+      at.add(mark.place);
+    }
+    if (mark.named && truth.verdict == "effect") {
+      if (std::isfinite(mark.shrink_percent)) shrinks.push_back(mark.shrink_percent);
+      if (std::isfinite(mark.calibrated)) harm.add(mark.with_effect > mark.calibrated);
+      if (mark.oracle_shrink_percent > 5)
+        against_oracle.push_back(std::max(0., mark.shrink_percent) / mark.oracle_shrink_percent);
+      if (mark.interval && std::isfinite(mark.fresh_shrink_percent))
+        coverage.add(mark.interval->first <= mark.fresh_shrink_percent &&
+                     mark.fresh_shrink_percent <= mark.interval->second);
+    } else if (truth.verdict == "effect" && truth.detectable() && mark.oracle_shrink_percent > 5) {
+      against_oracle.push_back(0);
+    }
+  }
+
+  /// Figures by name, for thresholds and for a file.
+  std::map<std::string, double> figures() const {
+    return {{"top1", top.value()},
+            {"in_set", in_set.value()},
+            {"place", place.value()},
+            {"pairs_top", pair_top.value()},
+            {"unknown", unknown.value()},
+            {"none_right", none_right.value()},
+            {"miscalibration_right", miscalibration_right.value()},
+            {"false_alarm_none", false_alarm_none.value()},
+            {"false_alarm_miscalibration", false_alarm_miscalibration.value()},
+            {"hidden_honest", hidden_honest.value()},
+            {"confident_wrong", confident_wrong.value()},
+            {"harm", harm.value()},
+            {"shrink_median_percent", median(shrinks)},
+            {"shrink_of_oracle", median(against_oracle)},
+            {"interval_coverage", coverage.value()},
+            {"calibration_error", calibration_error(claims)},
+            {"seconds_median", median(seconds)},
+            {"seconds_longest", seconds.empty() ? NAN : *std::max_element(seconds.begin(), seconds.end())},
+            {"failed", static_cast<double>(failed)}};
+  }
+};
+
+inline std::string text_of(const Summary& summary) {
+  using thermfit::fixed_text;
+  thermfit::cli::Table families({"effect", "cases", "detectable", "first", "in set", "place", "verdict"});
+  for (const auto& [name, shares] : summary.by_family) {
+    const auto& [seen, first, set, at, verdict] = shares;
+    families.add({name, std::to_string(seen.of), std::to_string(seen.right), first.text(), set.text(), at.text(),
+                  verdict.text()});
+  }
+  const auto percent = [](const Share& share) {
+    return share.of ? share.text() + "  " + fixed_text(100 * share.value(), 1) + " %" : std::string("-");
+  };
+  const auto figures = summary.figures();
+  const auto number = [&](const char* name, int decimals, double scale = 1) {
+    const double value = figures.at(name);
+    return std::isfinite(value) ? fixed_text(scale * value, decimals) : std::string("-");
+  };
+  thermfit::cli::Table totals({"over all", ""});
+  totals.add({"single effect first (detectable)", percent(summary.top)});
+  totals.add({"both of a pair found", percent(summary.pair_top)});
+  totals.add({"truth inside what is reported", percent(summary.in_set)});
+  totals.add({"place right, of those", percent(summary.place)});
+  totals.add({"false alarms on none", percent(summary.false_alarm_none)});
+  totals.add({"false alarms on miscalibration", percent(summary.false_alarm_miscalibration)});
+  totals.add({"verdict none right", percent(summary.none_right)});
+  totals.add({"verdict miscalibration right", percent(summary.miscalibration_right)});
+  totals.add({"unknown recognised", percent(summary.unknown)});
+  totals.add({"hidden or one-speed: no confident wrong name", percent(summary.hidden_honest)});
+  totals.add({"a wrong name stated above 50 %", percent(summary.confident_wrong)});
+  totals.add({"worse with the effect than without", percent(summary.harm)});
+  totals.add({"median shrink", number("shrink_median_percent", 1) + " %"});
+  totals.add({"median shrink, of the oracle's", number("shrink_of_oracle", 1, 100) + " %"});
+  totals.add({"interval holds the shrink on fresh batches", percent(summary.coverage)});
+  totals.add({"calibration error of the confidence", number("calibration_error", 3)});
+  totals.add({"time, median and longest", number("seconds_median", 2) + " s, " + number("seconds_longest", 2) + " s"});
+  totals.add({"no answer", std::to_string(summary.failed)});
+  return families.text() + "\n" + totals.text();
+}
+
+}  // namespace blind

@@ -1,0 +1,89 @@
+#pragma once
+
+/// What a case holds, from its truth.json or from the answers.json beside its folder.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace blind {
+
+using Json = nlohmann::json;
+
+struct TrueEffect {
+  std::vector<std::string> names;      ///< effect and what counts as the same
+  std::vector<std::string> locations;  ///< all acceptable
+  bool detectable = true;              ///< calibration alone cannot hide it
+};
+
+struct Truth {
+  std::string family;   ///< what the table lists it under
+  std::string verdict;  ///< none, miscalibration, effect, unknown
+  std::vector<TrueEffect> effects;
+  std::vector<std::string> without;  ///< taken out of the catalogue
+  bool poor = false;                 ///< one speed only: "cannot tell" is a right answer
+
+  bool detectable() const {
+    return std::all_of(effects.begin(), effects.end(), [](const TrueEffect& one) { return one.detectable; });
+  }
+};
+
+struct Case {
+  std::string name;
+  std::filesystem::path folder;
+  Truth truth;
+};
+
+inline Json read_json(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(path.string() + ": cannot be read");
+  return Json::parse(file);
+}
+
+/// Left after calibration, in units of the floor, from which an effect counts as detectable.
+constexpr double detectable_from = 8;
+
+inline Truth truth_of(const Json& given) {
+  Truth truth;
+  for (const Json& one : given.at("truth")) {
+    truth.family += (truth.family.empty() ? "" : " + ") + one.at("family").get<std::string>();
+    truth.verdict = one.value("verdict", "effect");
+    if (!one.contains("effect")) continue;
+    TrueEffect effect;
+    effect.names = {one.at("effect").get<std::string>()};
+    if (one.contains("also"))
+      for (const Json& name : one["also"]) effect.names.push_back(name);
+    for (const Json& place : one.at("location")) effect.locations.push_back(place);
+    effect.detectable = one.value("detectability", detectable_from) >= detectable_from;
+    truth.effects.push_back(effect);
+  }
+  if (given.contains("without"))
+    for (const Json& name : given["without"]) truth.without.push_back(name);
+  truth.poor = given.value("campaign", "") == "one-speed";
+  return truth;
+}
+
+/// All cases below `folder`, in the order of their names.
+inline std::vector<Case> find_cases(const std::filesystem::path& folder) {
+  std::vector<Case> cases;
+  const auto answers = folder / "answers.json";
+  if (std::filesystem::exists(answers)) {
+    for (const Json& one : read_json(answers)) {
+      const std::string name = one.at("case");
+      cases.push_back({name, folder / name, truth_of(one)});
+    }
+  } else {
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (std::filesystem::exists(entry.path() / "truth.json"))
+        cases.push_back(
+            {entry.path().filename().string(), entry.path(), truth_of(read_json(entry.path() / "truth.json"))});
+  }
+  std::sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) { return a.name < b.name; });
+  return cases;
+}
+
+}  // namespace blind
