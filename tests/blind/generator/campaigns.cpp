@@ -82,8 +82,8 @@ int make(const std::map<std::string, std::string>& given) {
     const std::string digits = std::to_string(n);
     const std::filesystem::path folder = std::filesystem::path(given.at("--out")) /
                                          (std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits);
-    std::filesystem::create_directories(folder / "real");
-    for (const auto& [file, text] : made.batches) thermfit::write_atomically((folder / "real" / file).string(), text);
+    for (const char* part : {"real", "fresh"}) std::filesystem::create_directories(folder / part);
+    for (const auto& [file, text] : made.batches) thermfit::write_atomically((folder / file).string(), text);
     thermfit::write_atomically((folder / "machine.json").string(), made.machine.dump(1) + "\n");
     thermfit::write_atomically((folder / "truth.json").string(), made.truth.dump(1) + "\n");
   }

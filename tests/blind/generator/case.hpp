@@ -20,7 +20,7 @@ struct Card {
 
 struct Case {
   nlohmann::ordered_json machine, truth;
-  std::vector<std::pair<std::string, std::string>> batches;  ///< file name, CSV text
+  std::vector<std::pair<std::string, std::string>> batches;  ///< `real/K01.csv`, CSV text
 };
 
 /// Noise of the instruments.
@@ -36,7 +36,7 @@ inline double rounded(double value, int digits) {
 
 /// The plant with the effects in it, run through the campaign: thermometers and displacement before noise.
 inline Signals shown(const Machine& machine, const Campaign& campaign, const std::vector<Effect>& effects,
-                     bool disturbed) {
+                     bool disturbed, bool fresh = false) {
   Plant plant = machine.plant;
   std::vector<HeatFlow> heats;
   for (const Effect& effect : effects) {
@@ -45,7 +45,9 @@ inline Signals shown(const Machine& machine, const Campaign& campaign, const std
   }
   const auto sensors = part_sensors(machine);
   Signals signals;
-  for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
+  const std::size_t from = fresh ? campaign.recorded : 0;
+  const std::size_t to = fresh ? campaign.batches.size() : campaign.recorded;
+  for (std::size_t b = from; b < to; ++b) {
     const Experiment& given = campaign.batches[b];
     const Experiment batch = disturbed ? given : calm(given);
     Vector start = at_rest(plant, batch);
@@ -196,7 +198,9 @@ inline Case make_case(std::uint64_t seed, std::uint64_t number, const Card& card
     for (std::size_t e = 0; e < card.effects.size(); ++e)
       if (const Effect effect = make_effect(card.effects[e], machine, campaign, base.fork(10 + e), 1); effect.nominal)
         effect.nominal(machine);
-    const Lumping lumping(machine, campaign.batches);
+    const std::vector<Experiment> recorded(campaign.batches.begin(),
+                                           campaign.batches.begin() + static_cast<std::ptrdiff_t>(campaign.recorded));
+    const Lumping lumping(machine, recorded);
     const Vector lumping_error = lumping.lumping_error();
     const Index last = lumping_error.size() - 1;
     if (trial < 20 && (lumping_error[last] > .15 || (last && lumping_error.head(last).maxCoeff() > .5))) continue;
@@ -216,9 +220,14 @@ inline Case make_case(std::uint64_t seed, std::uint64_t number, const Card& card
     bool faint = false;
     const bool minutes = random.chance(.85);
     Random noise = base.fork(3);
-    for (std::size_t b = 0; b < campaign.batches.size(); ++b)
-      made.batches.push_back({campaign.batches[b].name + ".csv",
-                              batch_text(machine, campaign.batches[b], real[b], instruments, minutes, noise)});
+    const Signals later = shown(machine, campaign, effects, true, true);
+    for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
+      const bool fresh = b >= campaign.recorded;
+      const Experiment& batch = campaign.batches[b];
+      made.batches.push_back(
+          {(fresh ? "fresh/" : "real/") + batch.name + ".csv",
+           batch_text(machine, batch, fresh ? later[b - campaign.recorded] : real[b], instruments, minutes, noise)});
+    }
 
     // Channel by channel: instrument noise, what lumping leaves, what draughts do.
     const Signals calm_signals = shown(machine, campaign, effects, false);
@@ -235,7 +244,7 @@ inline Case make_case(std::uint64_t seed, std::uint64_t number, const Card& card
     truth["machine"] = machine.kind;
     truth["truth"] = nlohmann::ordered_json::array();
     double hours = 0;
-    for (const Experiment& batch : campaign.batches)
+    for (const Experiment& batch : recorded)
       hours += batch.interval_s * static_cast<double>(batch.samples() - 1) / 3600;
     for (std::size_t e = 0; e < effects.size(); ++e) {
       std::vector<Effect> others = effects;

@@ -10,10 +10,14 @@ namespace blind {
 /// then a cool-down; `one-speed`: the same speed in every batch, the poorest protocol.
 struct Campaign {
   std::string protocol;
-  double air_swing_K;  ///< standard deviation of the slow course of the air in a batch
-  bool pump_logged;    ///< there is a fourth input, the hydraulic pump
+  double air_swing_K;    ///< standard deviation of the slow course of the air in a batch
+  bool pump_logged;      ///< there is a fourth input, the hydraulic pump
+  std::size_t recorded;  ///< the first of `batches`; the rest are fresh, kept from the diagnosis
   std::vector<Experiment> batches;
 };
+
+/// Batches kept back in every case, to see how far a claimed shrink holds.
+constexpr int fresh_batches = 5;
 
 /// An Ornstein-Uhlenbeck course of standard deviation 1 at equal steps.
 inline Vector wander(Random& random, Index rows, double step_s, double memory_s) {
@@ -58,7 +62,7 @@ inline Vector speed_course(Random& random, const std::string& protocol, Index sa
 }
 
 inline Campaign random_campaign(Random& random, const Machine& machine, const std::string& protocol) {
-  Campaign campaign{protocol, random.log_uniform(.2, 1.2), random.chance(.15), {}};
+  Campaign campaign{protocol, random.log_uniform(.2, 1.2), random.chance(.15), 0, {}};
   const bool poor = protocol == "one-speed";
   const bool coolant_logged = poor ? false : random.chance(.85);
   const int count = poor ? random.integer(6, 7) : random.integer(6, 10);
@@ -74,9 +78,13 @@ inline Campaign random_campaign(Random& random, const Machine& machine, const st
   const double draught = random.chance(.6) ? random.log_uniform(.01, .08) : random.log_uniform(.08, .4);
   const double draught_memory_s = random.log_uniform(600, 3000);
 
-  for (int b = 0; b < count; ++b) {
+  campaign.recorded = static_cast<std::size_t>(count);
+  for (int b = 0; b < count + fresh_batches; ++b) {
+    // Fresh batches spread over the same range of room temperatures.
+    const double place = b < count ? b : (b - count + .5) * (count - 1) / fresh_batches;
     Experiment batch;
-    batch.name = std::string(b + 1 < 10 ? "K0" : "K") + std::to_string(b + 1);
+    const int label = 1 + (b < count ? b : b - count);
+    batch.name = (b < count ? "K" : "F") + std::string(label < 10 ? "0" : "") + std::to_string(label);
     batch.interval_s = interval_s;
     batch.steps = static_cast<int>(interval_s / 10);
     batch.inputs = {"spindle_rpm"};
@@ -91,7 +99,7 @@ inline Campaign random_campaign(Random& random, const Machine& machine, const st
     if (campaign.pump_logged) batch.input.col(batch.column("pump")) = random_levels(random, samples, {0, 1}, 12, 60);
 
     const Index rows = batch.fine_rows();
-    const double at = coldest + (warmest - coldest) * (b + random.uniform(-.3, .3)) / std::max(1, count - 1);
+    const double at = coldest + (warmest - coldest) * (place + random.uniform(-.3, .3)) / std::max(1, count - 1);
     const double period_s = random.uniform(4, 12) * 3600, phase = random.uniform(0, 6.283185307179586);
     const Vector slow = wander(random, rows, batch.step_s(), 5400);
     batch.air_degC.resize(rows);
