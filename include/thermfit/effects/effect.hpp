@@ -36,6 +36,49 @@ struct EffectParameter {
   std::vector<double> starts;  ///< where to begin fitting; empty: at `mean`
 };
 
+/// A number that may have either sign, 0 without the effect.
+inline EffectParameter linear_parameter(std::string name, std::string unit, double sd) {
+  EffectParameter one;
+  one.name = std::move(name);
+  one.unit = std::move(unit);
+  one.sd = sd;
+  return one;
+}
+
+/// A number of at least 0, which is its value without the effect.
+inline EffectParameter positive_parameter(std::string name, std::string unit, double sd) {
+  EffectParameter one = linear_parameter(std::move(name), std::move(unit), sd);
+  one.lower = 0;
+  return one;
+}
+
+/// A number above 0, known by its order of magnitude; `sd` is of its logarithm. Towards 0 the effect vanishes.
+inline EffectParameter log_parameter(std::string name, std::string unit, double mean, double sd) {
+  EffectParameter one = positive_parameter(std::move(name), std::move(unit), sd);
+  one.mean = mean;
+  one.logarithmic = true;
+  return one;
+}
+
+/// A number that only shapes the effect.
+inline EffectParameter shape_parameter(std::string name, std::string unit, double mean, double sd, double lower,
+                                       double upper) {
+  EffectParameter one = linear_parameter(std::move(name), std::move(unit), sd);
+  one.mean = mean;
+  one.lower = lower;
+  one.upper = upper;
+  one.shapes = true;
+  return one;
+}
+
+/// A scale that is chosen and not fitted.
+inline EffectParameter fixed_parameter(std::string name, double value) {
+  EffectParameter one = linear_parameter(std::move(name), "", 1);
+  one.mean = value;
+  one.fixed = true;
+  return one;
+}
+
 /// What candidates() may use: the machine and what its data can show.
 struct Setting {
   ThermalNetwork network;
@@ -47,6 +90,11 @@ struct Setting {
   bool ambient_measured = false;  ///< a sensor mapped to ambient is in the data
   bool ambient_varies = false;    ///< and it moves within at least one batch
 
+  bool is_on_off(const std::string& input) const {
+    for (const std::string& one : on_off_inputs)
+      if (one == input) return true;
+    return false;
+  }
   double largest_of(const std::string& input) const {
     for (std::size_t i = 0; i < inputs.size(); ++i)
       if (inputs[i] == input) return largest[i];
@@ -107,8 +155,5 @@ class EffectLibrary {
  private:
   std::vector<std::shared_ptr<const Effect>> effects_;
 };
-
-/// What the data of a campaign can show of this machine.
-Setting setting_of(const ThermalNetwork& network, const Campaign& campaign);
 
 }  // namespace thermfit

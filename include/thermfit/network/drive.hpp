@@ -44,9 +44,11 @@ class Drive {
     if (f == 0) return ambient_tangents_.row(sample);
     return (1 - f) * ambient_tangents_.row(sample) + f * ambient_tangents_.row(sample + 1);
   }
-  double ambient_rate(Index sample) const {
-    if (sample + 1 >= samples()) return 0;
-    return (ambient_(sample + 1) - ambient_(sample)) / (time_s_(sample + 1) - time_s_(sample));
+  /// K/s from a sample to the next.
+  double ambient_rate(Index sample) const { return rate(ambient_, sample); }
+  double measured_ambient_rate(Index sample) const {
+    const Vector& measured = excitation_.measured_ambient_degC;
+    return rate(measured.size() > 0 ? measured : ambient_, sample);
   }
 
   /// The moment at a time, with the inputs of `sample`; `temperature_degC` may be null.
@@ -80,6 +82,11 @@ class Drive {
   double between(const Vector& values, Index sample, double time_s) const {
     const double f = fraction(sample, time_s);
     return f == 0 ? values(sample) : values(sample) + f * (values(sample + 1) - values(sample));
+  }
+
+  double rate(const Vector& values, Index sample) const {
+    if (sample + 1 >= samples()) return 0;
+    return (values(sample + 1) - values(sample)) / (time_s_(sample + 1) - time_s_(sample));
   }
 
   void apply_ambient_laws() {

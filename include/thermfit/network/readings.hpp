@@ -139,11 +139,11 @@ class Readings {
     const Vector later = now.temperatures() + step_s * rates, sooner = now.temperatures() - step_s * rates;
     Moment after = drive_.moment(point.sample, point.time_s, later.data()), before = after;
     before.temperature_degC = sooner.data();
-    const double drift_K = step_s * drive_.ambient_rate(point.sample);
-    after.time_s += step_s;
-    before.time_s -= step_s;
-    after.ambient_degC += drift_K;
-    before.ambient_degC -= drift_K;
+    for (auto [moment, shift_s] : {std::pair(&after, step_s), std::pair(&before, -step_s)}) {
+      moment->time_s += shift_s;
+      moment->ambient_degC += shift_s * drive_.ambient_rate(point.sample);
+      moment->measured_ambient_degC += shift_s * drive_.measured_ambient_rate(point.sample);
+    }
     for (const auto& term : output.terms)
       speed += (system_.value(term.law, after) - system_.value(term.law, before)) / (2 * step_s);
     return speed;

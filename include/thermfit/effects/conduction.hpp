@@ -1,0 +1,119 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "thermfit/effects/place.hpp"
+#include "thermfit/effects/setting.hpp"
+#include "thermfit/network/thermal_system.hpp"
+
+namespace thermfit {
+
+/// A joint that conducts better when warm, G (1 + k ((theta_i + theta_j)/2 - reference)/10 K), or at speed,
+/// G (1 + k u/scale), when it has a driver.
+class JointConductance : public Effect {
+ public:
+  std::string name() const override { return "joint-conductance"; }
+  Stage stage() const override { return Stage::conduction; }
+  std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
+    std::vector<ThermalNetwork::AddedEffect> result;
+    for (const auto& link : setting.network.links) {
+      const std::string place = pair_name(setting.network, link.a, link.b);
+      result.push_back({name(), place, "", {{"k", 0}}});
+      for (const std::string& input : setting.inputs)
+        if (!setting.is_on_off(input))
+          result.push_back({name(), place, input, {{"k", 0}, {"scale", scale_of(setting, input)}}});
+    }
+    return result;
+  }
+  std::vector<EffectParameter> parameters(const ThermalNetwork& network,
+                                          const ThermalNetwork::AddedEffect& added) const override {
+    link_at(network, added.location);
+    EffectParameter k = linear_parameter("k", "", 0.3);
+    k.lower = -0.5;
+    if (added.driver.empty()) return {k};
+    return {k, fixed_parameter("scale", 1)};
+  }
+  void act(ThermalSystem& system, const ThermalNetwork& network,
+           const ThermalNetwork::AddedEffect& added) const override {
+    const Index element = system.link_element(link_at(network, added.location));
+    if (!added.driver.empty()) {
+      const Index input = system.input(added.driver);
+      system.scale_conductance(element, [input](const Moment& now, const double* p) {
+        return std::max(-0.95, p[0] * std::abs(now.inputs[input]) / p[1]);
+      });
+      return;
+    }
+    const auto [a, b] = pair_at(network, added.location);
+    system.scale_conductance_by_state(
+        element, [a = a, b = b, reference = network.reference_degC](const Moment& now, const double* p) {
+          const double mean = (now.temperature_degC[a] + now.temperature_degC[b]) / 2;
+          return std::max(-0.95, p[0] * (mean - reference) / 10);
+        });
+  }
+};
+
+/// Conduction between two nodes that have no link: + G (theta_j - theta_i).
+class MissingLink : public Effect {
+ public:
+  std::string name() const override { return "missing-link"; }
+  Stage stage() const override { return Stage::conduction; }
+  std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
+    std::vector<ThermalNetwork::AddedEffect> result;
+    for (Index a = 0; a < setting.network.node_count(); ++a)
+      for (Index b = a + 1; b < setting.network.node_count(); ++b)
+        if (setting.network.find_link(a, b) < 0)
+          result.push_back({name(), pair_name(setting.network, a, b), "", {{"conductance_W_per_K", 0}}});
+    return result;
+  }
+  std::vector<EffectParameter> parameters(const ThermalNetwork& network,
+                                          const ThermalNetwork::AddedEffect& added) const override {
+    pair_at(network, added.location);
+    return {positive_parameter("conductance_W_per_K", "W/K", typical_conductance_W_per_K(network))};
+  }
+  void act(ThermalSystem& system, const ThermalNetwork& network,
+           const ThermalNetwork::AddedEffect& added) const override {
+    const auto [a, b] = pair_at(network, added.location);
+    system.add_conductance(a, b, [](const Moment&, const double* p) { return p[0]; });
+  }
+};
+
+/// A hidden mass C behind a node through G, which remembers: it starts at the temperature of the node.
+class ThermalMemory : public Effect {
+ public:
+  std::string name() const override { return "thermal-memory"; }
+  Stage stage() const override { return Stage::conduction; }
+  std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
+    std::vector<ThermalNetwork::AddedEffect> result;
+    for (const std::string& node : node_places(setting.network)) {
+      ThermalNetwork::AddedEffect one{name(), node, "", {}};
+      for (const EffectParameter& p : parameters(setting.network, one)) one.parameters.emplace_back(p.name, p.mean);
+      result.push_back(std::move(one));
+    }
+    return result;
+  }
+  std::vector<EffectParameter> parameters(const ThermalNetwork& network,
+                                          const ThermalNetwork::AddedEffect& added) const override {
+    const auto& node = network.nodes[static_cast<std::size_t>(node_at(network, added.location))];
+    double conductance = node.ambient_W_per_K;
+    for (const auto& link : network.links)
+      if (&network.nodes[static_cast<std::size_t>(link.a)] == &node ||
+          &network.nodes[static_cast<std::size_t>(link.b)] == &node)
+        conductance += link.conductance_W_per_K;
+    EffectParameter C = log_parameter("capacity_J_per_K", "J/K", node.capacity_J_per_K, 1);
+    EffectParameter G = log_parameter("conductance_W_per_K", "W/K", 0.3 * conductance, 1);
+    C.starts = {node.capacity_J_per_K, 3 * node.capacity_J_per_K};
+    C.shapes = true;
+    return {C, G};
+  }
+  void act(ThermalSystem& system, const ThermalNetwork& network,
+           const ThermalNetwork::AddedEffect& added) const override {
+    const Index node = node_at(network, added.location);
+    const Index hidden = system.add_node(node, [](const Moment&, const double* p) { return p[0]; });
+    system.add_conductance(hidden, node, [](const Moment&, const double* p) { return p[1]; });
+  }
+};
+
+}  // namespace thermfit
