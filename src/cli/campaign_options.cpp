@@ -87,7 +87,7 @@ std::vector<Option> campaign_options() {
       {"--temperatures", "NAMES",
        "temperature points, comma-separated; a name may be a glob such as 'PT*' (default: T1, T2, …)", 0, true},
       {"--errors", "NAMES", "thermal errors (default: those of X, Y, Z that there are)", 0, true},
-      {"--inputs", "NAMES", "known inputs (default: every other column of numbers; none: none", 0, true},
+      {"--inputs", "NAMES", "known inputs (default: every other column of numbers; none: none of them)", 0, true},
       {"--time-column", "NAME",
        "the clock, or 'none' (default: time_s, time_min, time_h, Time, time, t, or the column "
        "of ISO 8601 date-times)",

@@ -149,7 +149,9 @@ inline char detect_separator(const CsvEvidence& evidence, std::size_t names_give
                     "one separator in the whole file", "mend the first line, or say " + options);
   if (likely.size() > 1) throw ambiguous(likely[0], likely[1]);
   if (likely.size() == 1) return likely[0].separator;
-  if (!rows.empty() && names_given != 1 && rows.front().number_share() > 0.5 && evidence.lines.size() > 1)
+  const bool has_fields =
+      std::any_of(rows.begin(), rows.end(), [](const SeparatorEvidence& row) { return row.number_share() > 0.5; });
+  if (has_fields && names_given != 1)
     throw Error(place(name, first_line), "one name, but the rows have several fields", "a name for each column",
                 "mend the first line, or say " + options);
   return ',';
