@@ -19,7 +19,9 @@ namespace thermfit {
 /// constant values only. Allocates.
 inline std::vector<Finding> find_faults(const Batch& batch) {
   std::vector<Finding> findings = clock_findings(batch);
-  const std::vector<Index> switching = switching_rows(batch.inputs);
+  std::vector<Index> switching = switching_rows(batch.inputs);
+  for (const Finding& one : findings) switching.push_back(one.last_row);  // what happened in a gap is not known
+  const Matrix smooth = detail::despiked(batch.temperatures.values);
   const auto check = [&](const Channels& channels, bool is_error) {
     for (Index c = 0; c < channels.count(); ++c) {
       const Series series(channels.values.col(c));
@@ -36,12 +38,12 @@ inline std::vector<Finding> find_faults(const Batch& batch) {
       }
       if (series.size() < 12) continue;
       if (is_error) {
-        if (const auto stale = stale_finding(series, scale, name)) {
+        if (const auto stale = stale_finding(series, name)) {
           findings.push_back(*stale);
           continue;
         }
       }
-      const auto frozen = frozen_finding(batch, c, is_error, series, scale);
+      const auto frozen = frozen_finding(batch, smooth, c, is_error, series, scale);
       if (frozen) findings.push_back(*frozen);
       for (Finding& one : transient_findings(series, scale, switching, name, unit))
         if (!frozen || one.last_row < frozen->first_row || one.first_row > frozen->last_row + 1)

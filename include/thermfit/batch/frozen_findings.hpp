@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,20 +32,35 @@ inline std::vector<EqualRun> equal_runs(const std::vector<double>& values) {
   return runs;
 }
 
+/// Each column as the running median of five rows: a course without spikes of one or two.
+inline Matrix despiked(const Matrix& values) {
+  Matrix smooth = values;
+  for (Index column = 0; column < values.cols(); ++column)
+    for (Index row = 2; row + 2 < values.rows(); ++row) {
+      std::vector<double> window(values.col(column).data() + row - 2, values.col(column).data() + row + 3);
+      if (std::all_of(window.begin(), window.end(), [](double value) { return std::isfinite(value); }))
+        smooth(row, column) = median(std::move(window));
+    }
+  return smooth;
+}
+
 /// How far the other temperatures say that a channel moved within rows first … last: least squares outside these rows
-/// (a little ridge, since thermometers are collinear), used inside. Range of the prediction and residual scatter.
+/// (a little ridge, since thermometers are collinear), used inside. Range of the prediction and residual scatter. Where
+/// the rows outside are too few for all, the mean of the others stands for them.
 struct ExpectedMove {
   double range = 0, scatter = 0;
 };
 
-inline std::optional<ExpectedMove> expected_move(const Matrix& others, const Eigen::Ref<const Vector>& channel,
-                                                 Index first, Index last) {
+inline std::optional<ExpectedMove> expected_move(Matrix others, const Eigen::Ref<const Vector>& channel, Index first,
+                                                 Index last) {
   std::vector<Index> outside;
   for (Index row = 0; row < channel.size(); ++row)
     if ((row < first || row > last) && std::isfinite(channel(row)) && others.row(row).allFinite())
       outside.push_back(row);
-  const Index columns = others.cols(), count = static_cast<Index>(outside.size());
-  if (columns == 0 || count < columns + 8) return std::nullopt;
+  const Index count = static_cast<Index>(outside.size());
+  if (others.cols() == 0 || count < 8) return std::nullopt;
+  if (count < others.cols() + 8) others = others.rowwise().mean().eval();
+  const Index columns = others.cols();
   Matrix design(count, columns);
   Vector target(count);
   for (Index i = 0; i < count; ++i) {
@@ -80,14 +94,16 @@ inline Matrix without_column(const Matrix& matrix, Index column) {
 
 }  // namespace detail
 
-/// The longest run of one value that cannot be what it seems, or nothing.
+/// The longest run of one value that cannot be what it seems, or nothing. `temperatures` are those of the batch,
+/// despiked.
 ///
 /// A run of five rows or more is suspicious when the other temperatures say that the channel moved by more than four
 /// steps of its resolution and six times the scatter of that prediction; a run of eight or more also when the channel's
-/// own noise makes it improbable (less than one in a million in the whole batch). The three longest runs are judged;
-/// one at the start of the batch from ten rows on, since a point far from the heat begins late.
-inline std::optional<Finding> frozen_finding(const Batch& batch, Index column, bool is_error, const Series& series,
-                                             const SeriesScale& scale) {
+/// own noise makes it improbable (less than one in a million in the whole batch); a run of ten or more at the end of a
+/// thermal error's range also when it is reached by a step of more than five times the resolution. The three longest
+/// runs are judged; one at the start of the batch from ten rows on, since a point far from the heat begins late.
+inline std::optional<Finding> frozen_finding(const Batch& batch, const Matrix& temperatures, Index column,
+                                             bool is_error, const Series& series, const SeriesScale& scale) {
   const Channels& channels = is_error ? batch.errors : batch.temperatures;
   const std::string unit = is_error ? "um" : "K";
   std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
@@ -101,46 +117,46 @@ inline std::optional<Finding> frozen_finding(const Batch& batch, Index column, b
     const Index first = series.rows[run.first], last = series.rows[run.last];
     const bool improbable = run.length() >= 8 && static_cast<double>(run.length() - 1) * std::log(same) <
                                                      std::log(1e-6 / static_cast<double>(series.size()));
-    const Matrix& temperatures = batch.temperatures.values;
     const auto move = detail::expected_move(is_error ? temperatures : detail::without_column(temperatures, column),
                                             channels.values.col(column), first, last);
     const double limit = move ? std::max(4 * scale.resolution, 6 * move->scatter) : 0;
     const bool moved = move && move->range > limit;
-    if (!improbable && !moved) continue;
     const double value = series.values[run.first];
     const bool at_end = value == scale.highest || value == scale.lowest;
+    const double arrival = run.first > 0 ? std::abs(value - series.values[run.first - 1]) : 0;
+    const bool clipped = is_error && at_end && run.length() >= 10 && arrival > 5 * scale.resolution;
+    if (!improbable && !moved && !clipped) continue;
     const FindingRule rule = is_error && at_end ? FindingRule::saturated : FindingRule::stuck;
     const std::string rows = std::to_string(run.length()) + " rows of one value";
     const std::string& name = channels.names[static_cast<std::size_t>(column)];
     if (moved)
       return Finding{rule, name, first, last, move->range, limit, unit, rows + "; by the other points it moved"};
+    if (clipped)
+      return Finding{rule, name, first, last, arrival, 5 * scale.resolution, unit, rows + ", reached in full motion"};
     return Finding{rule, name, first, last, 0, scale.noise, unit, rows + "; its noise elsewhere rules that out"};
   }
   return std::nullopt;
 }
 
-/// A thermal error in steps: half of the readings or more repeat the one before, the others step by three times the
-/// resolution or more, and seven of ten runs have the same length.
-inline std::optional<Finding> stale_finding(const Series& series, const SeriesScale& scale, const std::string& name) {
+/// A thermal error that changes only every m-th row, m from 2 to 60: at least six changes and half of those possible,
+/// 19 of 20 of them in step.
+inline std::optional<Finding> stale_finding(const Series& series, const std::string& name) {
   const std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
-  if (2 * runs.size() > series.size() + 1 || runs.size() < 4) return std::nullopt;
-  std::map<std::size_t, std::size_t> lengths;
-  for (const detail::EqualRun& run : runs) ++lengths[run.length()];
-  const auto common = std::max_element(lengths.begin(), lengths.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  std::vector<double> steps;
-  for (std::size_t r = 1; r < runs.size(); ++r)
-    steps.push_back(std::abs(series.values[runs[r].first] - series.values[runs[r - 1].first]));
-  const double step = median(steps), limit = 3 * scale.resolution;
-  if (common->first < 2 || 10 * common->second < 7 * runs.size() || step < limit) return std::nullopt;
-  return Finding{FindingRule::stale,
-                 name,
-                 series.rows.front(),
-                 series.rows.back(),
-                 step,
-                 limit,
-                 "um",
-                 "new only every " + std::to_string(common->first) + " rows: read less often than written"};
+  for (std::size_t every = 60; every >= 2; --every) {
+    if (runs.size() < 7 || 2 * runs.size() * every < series.size()) continue;
+    std::vector<std::size_t> in_step(every, 0);
+    for (std::size_t r = 1; r < runs.size(); ++r) ++in_step[runs[r].first % every];
+    if (20 * *std::max_element(in_step.begin(), in_step.end()) < 19 * (runs.size() - 1)) continue;
+    return Finding{FindingRule::stale,
+                   name,
+                   series.rows.front(),
+                   series.rows.back(),
+                   static_cast<double>(every),
+                   1,
+                   "rows",
+                   "new only every " + std::to_string(every) + " rows: read less often than written"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace thermfit

@@ -51,15 +51,17 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
   const double spike_limit = std::max(8 * scale.noise, 5 * scale.resolution);
   const double jump_limit = std::max(12 * scale.noise, 6 * scale.resolution);
   std::vector<Finding> findings;
-  const auto explained = [&](Index row) {
-    return std::any_of(switching.begin(), switching.end(), [&](Index at) { return row >= at && row <= at + 2; });
+  const auto explained = [&](std::size_t i) {
+    const Index row = series.rows[i];
+    return row > series.rows[i - 1] + 1 ||
+           std::any_of(switching.begin(), switching.end(), [&](Index at) { return row >= at && row <= at + 2; });
   };
   const auto bend = [&](std::size_t i) { return x[i] - (x[i - 1] + x[i + 1]) / 2; };
   std::vector<bool> spiked(x.size(), false);
   for (std::size_t i = 2; i + 2 < x.size(); ++i) {
     const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[i + 1], x[i + 2]});
     const double beyond = std::max(x[i] - high, low - x[i]);
-    if (beyond <= spike_limit || explained(series.rows[i])) continue;
+    if (beyond <= spike_limit || explained(i)) continue;
     const double sign = x[i] > high ? 1 : -1, size = sign * bend(i);
     if (-sign * bend(i - 1) < size / 4 || -sign * bend(i + 1) < size / 4) continue;
     spiked[i] = true;
@@ -80,7 +82,7 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
         continue;
       }
     }
-    if (!explained(series.rows[i]))
+    if (!explained(i))
       findings.push_back({FindingRule::jump, name, series.rows[i - 1], series.rows[i], std::abs(size), jump_limit, unit,
                           "a lasting step that no input explains: sensor moved, probe zeroed?"});
   }
