@@ -21,6 +21,7 @@ inline std::vector<Finding> find_faults(const Batch& batch) {
   std::vector<Finding> findings = clock_findings(batch);
   std::vector<Index> switching = switching_rows(batch.inputs);
   for (const Finding& one : findings) switching.push_back(one.last_row);  // what happened in a gap is not known
+  std::sort(switching.begin(), switching.end());
   const Matrix smooth = detail::despiked(batch.temperatures.values);
   const auto check = [&](const Channels& channels, bool is_error) {
     for (Index c = 0; c < channels.count(); ++c) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -37,9 +38,11 @@ inline Matrix despiked(const Matrix& values) {
   Matrix smooth = values;
   for (Index column = 0; column < values.cols(); ++column)
     for (Index row = 2; row + 2 < values.rows(); ++row) {
-      std::vector<double> window(values.col(column).data() + row - 2, values.col(column).data() + row + 3);
-      if (std::all_of(window.begin(), window.end(), [](double value) { return std::isfinite(value); }))
-        smooth(row, column) = median(std::move(window));
+      if (!values.col(column).segment(row - 2, 5).allFinite()) continue;
+      std::array<double, 5> window;
+      std::copy_n(values.col(column).data() + row - 2, 5, window.begin());
+      std::nth_element(window.begin(), window.begin() + 2, window.end());
+      smooth(row, column) = window[2];
     }
   return smooth;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -27,17 +29,17 @@ inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, 
   std::vector<std::size_t> found;
   const auto step = [&](std::size_t i) { return values[i] - values[i - 1]; };
   for (std::size_t i = 3; i + 2 < values.size(); ++i) {
-    const std::vector<double> around{step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
-    double largest = 0;
-    for (const double one : around) largest = std::max(largest, std::abs(one));
-    if (std::abs(step(i) - median(around)) > limit && std::abs(step(i)) > 4 * largest) found.push_back(i);
+    std::array<double, 4> around{step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
+    std::sort(around.begin(), around.end());
+    const double trend = (around[1] + around[2]) / 2, largest = std::max(std::abs(around[0]), std::abs(around[3]));
+    if (std::abs(step(i) - trend) > limit && std::abs(step(i)) > 4 * largest) found.push_back(i);
   }
   return found;
 }
 
 }  // namespace detail
 
-/// Spikes and jumps of a series, in order of rows.
+/// Spikes and jumps of a series, in order of rows; `switching` holds rows in order.
 ///
 /// A spike leaves the range of the two readings before and the two after by more than 8 times the noise (5 times the
 /// resolution, where that is more), and its neighbours' second differences have the opposite sign: a corner of the true
@@ -53,8 +55,8 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
   std::vector<Finding> findings;
   const auto explained = [&](std::size_t i) {
     const Index row = series.rows[i];
-    return row > series.rows[i - 1] + 1 ||
-           std::any_of(switching.begin(), switching.end(), [&](Index at) { return row >= at && row <= at + 2; });
+    const auto at = std::upper_bound(switching.begin(), switching.end(), row);
+    return row > series.rows[i - 1] + 1 || (at != switching.begin() && row <= *std::prev(at) + 2);
   };
   const auto bend = [&](std::size_t i) { return x[i] - (x[i - 1] + x[i + 1]) / 2; };
   std::vector<bool> spiked(x.size(), false);
