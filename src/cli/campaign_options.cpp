@@ -68,16 +68,17 @@ std::vector<std::string> files_like(const std::string& pattern) {
 }
 
 char separator(const Arguments& arguments) {
-  const std::string text =
-      arguments.choice("--delimiter", {"auto", "comma", "semicolon", "tab", "bar", ",", ";", "\t", "\\t", "|"}, "auto");
-  if (text == "auto") return 0;
-  if (text == "tab" || text == "\\t") return '\t';
-  return text == "comma" ? ',' : text == "semicolon" ? ';' : text == "bar" ? '|' : text.front();
+  const std::string given = arguments.value_or("--delimiter", "auto");
+  if (given.size() == 1 && given.find_first_of(",;\t|") == 0) return given.front();
+  const std::string word = arguments.choice("--delimiter", {"auto", "comma", "semicolon", "tab", "bar"}, "auto");
+  return word == "comma" ? ',' : word == "semicolon" ? ';' : word == "tab" ? '\t' : word == "bar" ? '|' : '\0';
 }
 
 char decimal_mark(const Arguments& arguments) {
-  const std::string text = arguments.choice("--decimal", {"auto", "point", "comma", ".", ","}, "auto");
-  return text == "auto" ? '\0' : text == "point" ? '.' : text == "comma" ? ',' : text.front();
+  const std::string given = arguments.value_or("--decimal", "auto");
+  if (given == "." || given == ",") return given.front();
+  const std::string word = arguments.choice("--decimal", {"auto", "point", "comma"}, "auto");
+  return word == "point" ? '.' : word == "comma" ? ',' : '\0';
 }
 
 }  // namespace

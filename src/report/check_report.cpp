@@ -112,13 +112,15 @@ std::string check_text(const std::vector<CheckedBatch>& checked) {
     for (const Finding& one : found) {
       table.add({batch.name, one.channel, std::string(rule_name(one.rule)), rows_text(one), general_text(one.figure, 4),
                  general_text(one.limit, 4), one.unit});
-      notes += wrap("  " + batch.name + ' ' + one.channel + ", row " + rows_text(one) + ": " + one.note, 80, 4);
+      notes += wrap("  " + batch.name + ' ' + one.channel + (one.first_row == one.last_row ? ", row " : ", rows ") +
+                        rows_text(one) + ": " + one.note,
+                    80, 4);
     }
   }
   std::string text = overview.text() + '\n';
   if (findings > 0) text += table.text() + '\n' + notes + '\n';
-  return text + plural(findings, "finding", "findings") +
-         (findings > 0 ? " in " + std::to_string(faulty) + " of " : " in ") +
+  const std::string faulty_of = findings > 0 && checked.size() > 1 ? std::to_string(faulty) + " of " : "";
+  return text + plural(findings, "finding", "findings") + " in " + faulty_of +
          plural(checked.size(), "batch", "batches") + '\n';
 }
 

@@ -16,6 +16,7 @@ namespace thermfit {
 /// Rows in which a known input has another value than in the row before.
 inline std::vector<Index> switching_rows(const Channels& inputs) {
   std::vector<Index> rows;
+  if (inputs.count() == 0) return rows;
   for (Index row = 1; row < inputs.values.rows(); ++row)
     if ((inputs.values.row(row).array() != inputs.values.row(row - 1).array()).any()) rows.push_back(row);
   return rows;
