@@ -45,19 +45,40 @@ class LinearGap {
       return result;
     };
     const thermfit::ThermalNetwork nominal = network;
-    for (int pass = 0; pass < 4; ++pass) {
-      network = thermfit::with_values(nominal, parameters, values());
+    double cost = 0, damping = 0;
+    for (int pass = 0; pass < 12; ++pass) {
       const auto runs = thermfit::simulate(network, excitations_, library, parameters);
       residual = measured() - stacked(runs);
+      cost = residual.squaredNorm() + t.squaredNorm();
       if (pass == 0) as_simulated = residual;
       jacobian = slopes(runs, t.size());
       for (Index j = 0; j < t.size(); ++j) jacobian.col(j) *= parameters[static_cast<std::size_t>(j)].slope(t[j]);
-      if (pass == 3) break;
-      Matrix normal = jacobian.transpose() * jacobian;
-      normal.diagonal().array() += 1;
-      const Vector step = normal.llt().solve(jacobian.transpose() * residual - t);
-      t += step.cwiseMax(-1).cwiseMin(1);
+      const Matrix normal = jacobian.transpose() * jacobian;
+      const Vector downhill = jacobian.transpose() * residual - t;
+      bool better = false;
+      for (int trial = 0; trial < 6 && !better; ++trial, damping = std::max(10 * damping, 1e-4)) {
+        Matrix damped = normal;
+        damped.diagonal() += Vector::Ones(t.size()) + damping * normal.diagonal();
+        const Vector moved = t + damped.llt().solve(downhill), before = t;
+        t = moved.cwiseMax(-6).cwiseMin(6);
+        const thermfit::ThermalNetwork tried = thermfit::with_values(nominal, parameters, values());
+        const double now =
+            (measured() - stacked(thermfit::simulate(tried, excitations_, library))).squaredNorm() + t.squaredNorm();
+        better = now < cost;
+        if (better) {
+          network = tried;
+          if (now > .999 * cost) pass = 100;
+          damping /= 100;
+        } else {
+          t = before;
+        }
+      }
+      if (!better) break;
     }
+    const auto runs = thermfit::simulate(network, excitations_, library, parameters);
+    residual = measured() - stacked(runs);
+    jacobian = slopes(runs, t.size());
+    for (Index j = 0; j < t.size(); ++j) jacobian.col(j) *= parameters[static_cast<std::size_t>(j)].slope(t[j]);
     base_ = stacked(thermfit::simulate(network, excitations_, library));
   }
 

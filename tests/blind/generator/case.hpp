@@ -203,7 +203,7 @@ inline Case make_case(std::uint64_t seed, std::uint64_t number, const Card& card
     const Lumping lumping(machine, recorded);
     const Vector lumping_error = lumping.lumping_error();
     const Index last = lumping_error.size() - 1;
-    if (trial < 20 && (lumping_error[last] > .15 || (last && lumping_error.head(last).maxCoeff() > .5))) continue;
+    if (trial < 20 && (lumping_error[last] > .15 || (last && lumping_error.head(last).maxCoeff() > .6))) continue;
     const Signals plain = shown(machine, campaign, {}, false);
     std::vector<Effect> effects;
     std::vector<double> sizes;

@@ -114,7 +114,7 @@ inline Machine random_machine(Random& random) {
   }
 
   // Cells: a chain in every lump, stiff against the heat that passes it.
-  const double stiffness = random.log_uniform(2.5, 25);
+  const double stiffness = random.log_uniform(1.3, 10);
   Vector through = lumped.ambient_W_per_K;
   for (const Link& link : lumped.links) through[link.a] += link.W_per_K, through[link.b] += link.W_per_K;
   Plant& plant = machine.plant;
@@ -150,7 +150,7 @@ inline Machine random_machine(Random& random) {
   for (Index i = 0; i < n; ++i) {
     const bool turns = machine.group(i) == "shaft" || machine.group(i) == "spindle" || machine.name(i) == "rotor";
     if (random.chance(turns ? .1 : .8)) machine.sensors.push_back({"", i, random.pick(machine.cells(i))});
-    if (!turns && random.chance(.15)) machine.sensors.push_back({"", i, random.pick(machine.cells(i))});
+    if (!turns && random.chance(.3)) machine.sensors.push_back({"", i, random.pick(machine.cells(i))});
   }
   machine.sensors.push_back({"", -1, -1});
   random.shuffle(machine.sensors);
