@@ -7,6 +7,7 @@ const std::vector<Command>& all_commands() {
       // clang-format off: one a line, in the order of the work
       check_command(),
       inspect_command(),
+      diagnose_command(),
       // clang-format on
   };
   return commands;

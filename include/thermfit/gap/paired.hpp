@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "thermfit/gap/conditions.hpp"
 #include "thermfit/gap/diagnosis.hpp"
+#include "thermfit/gap/paired_account.hpp"
 #include "thermfit/gap/paired_scan.hpp"
-#include "thermfit/gap/remaining.hpp"
-#include "thermfit/gap/where_periods.hpp"
+#include "thermfit/gap/parallel.hpp"
 
 namespace thermfit {
 
@@ -24,7 +21,7 @@ struct PairedOptions {
   std::vector<std::string> effects;  ///< only these; empty: the whole catalogue
   std::vector<std::string> without;  ///< not these
   unsigned seed = 1;
-  unsigned threads = 1;
+  unsigned threads = 0;       ///< 0: all cores
   double decisive_nats = 60;  ///< evidence over calibration that a named effect must have
   std::function<void(const std::string&)> progress;
 };
@@ -54,7 +51,6 @@ class PairedDiagnosis {
   }
   const std::string& name(Index c) const { return campaign_.channels[static_cast<std::size_t>(c)]; }
   PairedChannel& channel(Index c) { return channels_[static_cast<std::size_t>(c)]; }
-  bool is_output(Index c) const { return c >= campaign_.temperatures || name(c) != campaign_.room; }
   /// The channel the gap is told for: the first displacement, else the temperature with the largest gap.
   Index headline() const {
     if (campaign_.temperatures < campaign_.channel_count()) return campaign_.temperatures;
@@ -79,7 +75,7 @@ class PairedDiagnosis {
         campaign_.part(one.gap, b) = campaign_.batches[b].measured.col(c) - campaign_.batches[b].simulated.col(c);
       one.as_simulated = rms_of(one.gap);
       judge_calibration(campaign_, one);
-      if (is_output(c)) looseness.push_back(best_looseness(one));
+      if (campaign_.is_output(c)) looseness.push_back(best_looseness(one));
       channels_.push_back(std::move(one));
     }
     // Calibration is as loose as the median channel needs, but never so loose that it hides an effect.
@@ -115,7 +111,7 @@ class PairedDiagnosis {
       const PairedChannel& one = channel(c);
       const Vector gap =
           one.basis.regressors *
-          ridge(one.products, one.basis.prior_sd, one.calibrated * std::sqrt(one.correlation)).coefficients;
+          fit_with_prior(one.products, one.basis.prior_sd, one.calibrated * std::sqrt(one.correlation)).coefficients;
       predicted.emplace_back();
       for (std::size_t b = 0; b < campaign_.batches.size(); ++b)
         predicted.back().push_back(campaign_.batches[b].simulated.col(c) + campaign_.part(gap, b));
@@ -124,15 +120,8 @@ class PairedDiagnosis {
     for (PairedSignature& one : SignatureBuilder(campaign_, options_.reference_degC, predicted).all())
       if (wanted(one.effect)) signatures_.push_back(std::move(one));
     scores_.assign(signatures_.size(), {});
-    const std::size_t workers = std::max(1u, options_.threads);
-    const auto work = [&](std::size_t first) {
-      for (std::size_t i = first; i < signatures_.size(); i += workers)
-        scores_[i] = score_of(i, signatures_[i], channels_, campaign_);
-    };
-    std::vector<std::thread> pool;
-    for (std::size_t worker = 1; worker < workers; ++worker) pool.emplace_back(work, worker);
-    work(0);
-    for (std::thread& thread : pool) thread.join();
+    in_parallel(signatures_.size(), options_.threads,
+                [&](std::size_t i) { scores_[i] = score_of(i, signatures_[i], channels_, campaign_); });
     std::sort(scores_.begin(), scores_.end(), [](const SignatureScore& a, const SignatureScore& b) {
       return a.gain != b.gain ? a.gain > b.gain : a.signature < b.signature;
     });
@@ -191,6 +180,7 @@ class PairedDiagnosis {
     const double needed = (round ? 2 : 1) * options_.decisive_nats;
     if (found.empty() || found[0].score->gain < needed || !matters(*found[0].score)) return false;
     const Candidate& best = found[0];
+    if (round > 0 && is_rival(best)) return false;
     const PairedSignature& signature = signatures_[best.score->signature];
     const std::vector<PairedChannel> before = channels_;
     add_to_basis(signature);
@@ -223,6 +213,13 @@ class PairedDiagnosis {
     return true;
   }
 
+  bool is_rival(const Candidate& candidate) const {
+    for (const FoundEffect& found : result_.effects)
+      for (const Rival& rival : found.alternatives)
+        if (rival.effect == candidate.effect && rival.location == candidate.location) return true;
+    return false;
+  }
+
   /// A further effect must lower the held-out gap where it counts: by a fifth in the displacement, by half in a sensor.
   bool improves(const std::vector<PairedChannel>& before, const SignatureScore& score) const {
     const std::size_t output = static_cast<std::size_t>(headline());
@@ -253,7 +250,7 @@ class PairedDiagnosis {
     for (const Candidate& one : found) {
       if (one.probability >= .05 || std::count(named.begin(), named.end(), one.effect) > 0) continue;
       named.push_back(one.effect);
-      if (!found.empty() && one.effect == found[0].effect && one.driver == found[0].driver) continue;
+      if (one.effect == found[0].effect) continue;
       result_.ruled_out.push_back(
           {one.effect, one.location,
            one.score->gain < options_.decisive_nats
@@ -270,26 +267,12 @@ class PairedDiagnosis {
     }
   }
 
-  /// What the simulator leaves on batches left out: without the measured temperatures that judged the displacement.
-  static Vector residual_of(const PairedCampaign& campaign, const PairedChannel& one) {
-    Matrix regressors(one.gap.size(), one.basis.regressors.cols());
-    Vector prior_sd(one.basis.prior_sd.size());
-    Index kept = 0;
-    for (Index column = 0; column < regressors.cols(); ++column) {
-      if (std::count(one.basis.borrowed.begin(), one.basis.borrowed.end(), column) > 0) continue;
-      regressors.col(kept) = one.basis.regressors.col(column);
-      prior_sd(kept++) = one.basis.prior_sd(column);
-    }
-    return held_out_residual(campaign, regressors.leftCols(kept), one.gap, prior_sd.head(kept),
-                             one.calibrated * std::sqrt(one.correlation));
-  }
-
   /// Too much is left in the channels the effect should explain: the cause is something else.
   bool leaves_too_much() const {
     double before = 0, after = 0;
     for (Index c = 0; c < campaign_.channel_count(); ++c) {
       const PairedChannel& one = channels_[static_cast<std::size_t>(c)];
-      if (!is_output(c) || one.noise <= 0) continue;
+      if (!campaign_.is_output(c) || one.noise <= 0) continue;
       before += std::max(0., std::pow(first_[static_cast<std::size_t>(c)].calibrated / one.noise, 2) - 1);
       after += std::max(0., std::pow(one.calibrated / one.noise, 2) - 1);
     }
@@ -314,123 +297,8 @@ class PairedDiagnosis {
     } else {
       result_.verdict = result_.effects[0].alternatives.empty() ? Verdict::effect : Verdict::ambiguous;
     }
-    tell_gap();
-    tell_where();
-    tell_limits();
-  }
-
-  /// rms by stage of one channel, over all rows or those of one batch.
-  StagedGap staged(Index c, std::size_t batch) const {
-    const std::size_t k = static_cast<std::size_t>(c);
-    const auto rms = [&](const Vector& stack) {
-      return batch == campaign_.batches.size() ? rms_of(stack) : rms_of(campaign_.part(stack, batch));
-    };
-    return {rms(first_[k].gap), rms(first_residuals_[k]), rms(last_residuals_[k]), channels_[k].noise};
-  }
-
-  void tell_gap() {
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      first_residuals_.push_back(residual_of(campaign_, first_[c]));
-      last_residuals_.push_back(result_.effects.empty() ? first_residuals_[c] : residual_of(campaign_, channels_[c]));
-    }
-    Gap& gap = result_.gap;
-    const std::size_t all = campaign_.batches.size();
-    gap.output = name(told_);
-    gap.unit = told_ < campaign_.temperatures ? "K" : "um";
-    gap.rms = staged(told_, all);
-    gap.held_out = all > 1;
-    gap.shrink_percent = 100 * (1 - gap.rms.with_effect / std::max(gap.rms.calibrated, 1e-12));
-    const double noise2 = gap.rms.noise * gap.rms.noise, open = gap.rms.calibrated * gap.rms.calibrated - noise2;
-    if (open > 0)
-      gap.shrink_of_explainable_percent =
-          100 *
-          std::min(1., (gap.rms.calibrated * gap.rms.calibrated - gap.rms.with_effect * gap.rms.with_effect) / open);
-    gap.shrink_ci95_percent = shrink_interval();
-    for (std::size_t b = 0; b < all; ++b) gap.per_batch.push_back({campaign_.batches[b].name, staged(told_, b)});
-    for (Index c = 0; c < campaign_.temperatures; ++c)
-      if (is_output(c)) gap.per_sensor.push_back({name(c), "K", staged(c, all)});
-  }
-
-  /// 95 % interval of the shrink from 1000 draws of whole batches.
-  Interval shrink_interval() const {
-    const std::size_t all = campaign_.batches.size();
-    std::vector<double> before, after, shrinks;
-    for (std::size_t b = 0; b < all; ++b) {
-      before.push_back(Vector(campaign_.part(first_residuals_[static_cast<std::size_t>(told_)], b)).squaredNorm());
-      after.push_back(Vector(campaign_.part(last_residuals_[static_cast<std::size_t>(told_)], b)).squaredNorm());
-    }
-    std::minstd_rand random(options_.seed);
-    for (int draw = 0; draw < 1000; ++draw) {
-      double sum_before = 0, sum_after = 0;
-      for (std::size_t k = 0; k < all; ++k) {
-        const std::size_t b = random() % all;
-        sum_before += before[b];
-        sum_after += after[b];
-      }
-      shrinks.push_back(100 * (1 - std::sqrt(sum_after / std::max(sum_before, 1e-300))));
-    }
-    std::sort(shrinks.begin(), shrinks.end());
-    return {shrinks[25], shrinks[974]};
-  }
-
-  void tell_where() {
-    Campaign measured;
-    std::vector<Vector> residuals, last, times_s;
-    for (std::size_t b = 0; b < campaign_.batches.size(); ++b) {
-      const PairedBatch& pair = campaign_.batches[b];
-      Batch batch;
-      batch.name = pair.name;
-      batch.time_s = pair.time_s;
-      batch.inputs = {campaign_.inputs, pair.inputs};
-      batch.temperatures = {{campaign_.channels.begin(), campaign_.channels.begin() + campaign_.temperatures},
-                            pair.measured.leftCols(campaign_.temperatures)};
-      measured.push_back(std::move(batch));
-      times_s.push_back(pair.time_s);
-      residuals.push_back(campaign_.part(first_residuals_[static_cast<std::size_t>(told_)], b));
-      last.push_back(campaign_.part(last_residuals_[static_cast<std::size_t>(told_)], b));
-    }
-    Where& where = result_.where;
-    where.conditions = condition_shares(measured, residuals, campaign_.room);
-    where.frequency = period_shares(times_s, residuals);
-    if (!result_.effects.empty()) where.stages.push_back({word_of(stage_), 1});
-    double sum = 0;
-    for (Index c = 0; c < campaign_.channel_count(); ++c) {
-      const PairedChannel& one = first_[static_cast<std::size_t>(c)];
-      if (!is_output(c) || one.noise <= 0) continue;
-      where.places.push_back({name(c), std::max(0., std::pow(one.calibrated / one.noise, 2) - 1)});
-      sum += where.places.back().share;
-    }
-    for (NamedShare& place : where.places) place.share = sum > 0 ? place.share / sum : 0;
-    std::stable_sort(where.places.begin(), where.places.end(),
-                     [](const NamedShare& a, const NamedShare& b) { return a.share > b.share; });
-    result_.remaining = remaining_gap(measured, last, result_.gap.rms.with_effect, result_.gap.rms.noise,
-                                      result_.gap.unit, options_.seed);
-  }
-
-  void tell_limits() {
-    for (const std::string& remark : campaign_.remarks) result_.data_problems.push_back({"pairing", remark});
-    for (std::size_t i = 0; i < campaign_.inputs.size(); ++i) {
-      double low = 1e300, high = -1e300;
-      for (const PairedBatch& batch : campaign_.batches) {
-        low = std::min(low, batch.inputs.col(static_cast<Index>(i)).minCoeff());
-        high = std::max(high, batch.inputs.col(static_cast<Index>(i)).maxCoeff());
-      }
-      if (low < high) continue;
-      result_.data_problems.push_back({campaign_.inputs[i], "never changes: effects it drives look like calibration"});
-    }
-    std::vector<std::string>& claims = result_.weaker_claims;
-    claims.push_back(
-        "without the network no power in W, no node between the sensors, and no machine with the effect can "
-        "be given; a place is the sensor that responds");
-    if (campaign_.room.empty())
-      claims.push_back("no ambient temperature is known (--ambient NAME): effects of the room cannot be told apart");
-    if (campaign_.batches.size() == 1)
-      claims.push_back("one batch only: the figures are those of the fit itself, nothing is proven on unseen data");
-    else if (campaign_.batches.size() < 4)
-      claims.push_back("only " + std::to_string(campaign_.batches.size()) +
-                       " batches: the interval of the shrink is rough");
-    if (campaign_.temperatures == campaign_.channel_count())
-      claims.push_back("no displacement is paired: expansion and probe effects were not looked for");
+    PairedAccount(campaign_, first_, channels_, told_, options_.seed).tell(result_);
+    if (!result_.effects.empty()) result_.where.stages.push_back({word_of(stage_), 1});
   }
 
   PairedOptions options_;
@@ -438,7 +306,6 @@ class PairedDiagnosis {
   Drives drives_;
   std::vector<PairedChannel> channels_;
   std::vector<PairedChannel> first_;  ///< with calibration alone
-  std::vector<Vector> first_residuals_, last_residuals_;
   std::vector<PairedSignature> signatures_;
   std::vector<SignatureScore> scores_;
   Stage stage_ = Stage::heat;

@@ -8,7 +8,7 @@
 
 #include "thermfit/gap/paired_campaign.hpp"
 #include "thermfit/gap/paired_filters.hpp"
-#include "thermfit/gap/ridge.hpp"
+#include "thermfit/gap/prior_fit.hpp"
 
 namespace thermfit {
 
@@ -103,7 +103,7 @@ inline Contributions contributions(const PairedCampaign& campaign, const Drives&
   }
   const double scale = std::sqrt(rise.squaredNorm() / static_cast<double>(campaign.rows())) + 1e-9;
   const Vector fitted =
-      ridge(cross_products(regressors, rise), Vector::Constant(columns, 30 * scale), .01 * scale).coefficients;
+      fit_with_prior(cross_products(regressors, rise), Vector::Constant(columns, 30 * scale), .01 * scale).coefficients;
   Contributions result;
   Index at = 0;
   for (const auto& drive : drives.traces) {
@@ -138,7 +138,8 @@ inline CalibrationBasis calibration_basis(const PairedCampaign& campaign, const 
           simulated.leftCols(campaign.temperatures).rowwise() - simulated.row(0).head(campaign.temperatures);
       campaign.part(displaced, b) = simulated.col(channel);
     }
-    um_per_K = ridge(cross_products(rises, displaced), Vector::Constant(campaign.temperatures, 3), .2).coefficients;
+    um_per_K =
+        fit_with_prior(cross_products(rises, displaced), Vector::Constant(campaign.temperatures, 3), .2).coefficients;
   }
 
   std::vector<double> prior_sd;

@@ -9,7 +9,7 @@
 
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/error.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 
@@ -33,6 +33,8 @@ struct PairedCampaign {
   std::vector<std::string> remarks;  ///< what was done to make them comparable
 
   Index channel_count() const { return static_cast<Index>(channels.size()); }
+  /// Whether the simulator is answerable for a channel; the ambient is an input.
+  bool is_output(Index c) const { return c >= temperatures || channels[static_cast<std::size_t>(c)] != room; }
   Index rows() const { return first_row(batches.size()); }
 
   /// Where batch `b` begins when all are stacked below each other.

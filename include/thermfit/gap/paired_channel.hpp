@@ -62,7 +62,7 @@ inline Vector held_out_residual(const PairedCampaign& campaign, const Matrix& re
     const Vector own_gap = campaign.part(gap, b);
     Matrix others = all;
     if (campaign.batches.size() > 1) others -= cross_products(own_regressors, own_gap);
-    campaign.part(residual, b) = own_gap - own_regressors * ridge(others, prior_sd, noise).coefficients;
+    campaign.part(residual, b) = own_gap - own_regressors * fit_with_prior(others, prior_sd, noise).coefficients;
   }
   return residual;
 }

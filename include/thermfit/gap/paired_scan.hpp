@@ -9,7 +9,7 @@
 
 #include "thermfit/gap/paired_channel.hpp"
 #include "thermfit/gap/paired_signatures.hpp"
-#include "thermfit/io/number.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 
@@ -64,7 +64,7 @@ inline ChannelScore score_in(const PairedSignature& signature, const PairedChann
   Vector prior_sd(known + columns);
   prior_sd << channel.basis.prior_sd, prior.sd;
   const Evidence evidence = profiled_evidence(channel, products, prior_sd);
-  const RidgeFit fit = ridge(products, prior_sd, evidence.noise, true);
+  const PriorFit fit = fit_with_prior(products, prior_sd, evidence.noise, true);
   const Vector tail = fit.coefficients.tail(columns) + prior.mean;
   const Vector trace = scaled * tail;
   ChannelScore score{index,

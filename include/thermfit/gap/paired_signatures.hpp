@@ -96,11 +96,11 @@ class SignatureBuilder {
       if (is_room(c)) continue;
       single("sensor-offset", name(c), Stage::measurement, c, {"offset_K", "K", 1, -1},
              [](const PairedBatch& batch, std::size_t) { return Vector::Ones(batch.time_s.size()); });
-      single("sensor-gain", name(c), Stage::measurement, c, {"gain", "1", 1, -1},
+      single("sensor-gain", name(c), Stage::measurement, c, {"gain", "", 1, -1},
              [&](const PairedBatch& batch, std::size_t) -> Vector {
                return batch.simulated.col(c).array() - reference_degC_;
              });
-      single("sensor-drift", name(c), Stage::measurement, c, {"drift_K_per_h", "K/h", 1, -1},
+      single("sensor-drift", name(c), Stage::measurement, c, {"rate_K_per_h", "K/h", 1, -1},
              [](const PairedBatch& batch, std::size_t) -> Vector { return batch.time_s / 3600; });
       for (double share = .003; share < .25; share *= 1.35) {
         const double lag_s = share * duration_s();
@@ -119,7 +119,8 @@ class SignatureBuilder {
 
   void displacement() {
     for (Index c = campaign_.temperatures; c < campaign_.channel_count(); ++c) {
-      const std::string output = name(c);
+      const bool single_output = campaign_.channel_count() == campaign_.temperatures + 1;
+      const std::string output = single_output ? "displacement" : name(c);
       const std::vector<Vector>& predicted = predicted_[static_cast<std::size_t>(c - campaign_.temperatures)];
       for (std::size_t i = 0; i < campaign_.inputs.size(); ++i) {
         double largest = 0;
@@ -150,9 +151,9 @@ class SignatureBuilder {
                [&](const PairedBatch& batch, std::size_t b) -> Vector {
                  return delayed(batch.time_s, predicted[b], delay_s) - predicted[b];
                })
-            .shape = {{"delay_s", "s", delay_s, -1}};
+            .shape = {{"late_s", "s", delay_s, -1}};
       }
-      single("probe-drift", output, Stage::measurement, c, {"um_per_h", "um/h", 1, -1},
+      single("probe-drift", output, Stage::measurement, c, {"rate_um_per_h", "um/h", 1, -1},
              [](const PairedBatch& batch, std::size_t) -> Vector { return batch.time_s / 3600; })
           .driver = "time";
       if (has_room())
@@ -163,7 +164,7 @@ class SignatureBuilder {
         if (is_room(j)) continue;
         single("missing-expansion", name(j), Stage::expansion, c, {"um_per_K", "um/K", 1, -1},
                [&](const PairedBatch& batch, std::size_t) { return since_first(batch.measured.col(j)); });
-        single("nonlinear-expansion", name(j), Stage::expansion, c, {"um_per_K2", "um/K^2", 1, -1},
+        single("nonlinear-expansion", name(j), Stage::expansion, c, {"um_per_K2", "um/K2", 1, -1},
                [&](const PairedBatch& batch, std::size_t) {
                  return zeroed((batch.measured.col(j).array() - reference_degC_).square());
                });
@@ -191,7 +192,7 @@ class SignatureBuilder {
         PairedSignature& one =
             spread("friction-law", "source driven by " + campaign_.inputs[i], Stage::heat, power(exponent));
         one.driver = campaign_.inputs[i];
-        one.shape = {{"exponent", "1", exponent, -1}};
+        one.shape = {{"exponent", "", exponent, -1}};
       }
     }
   }

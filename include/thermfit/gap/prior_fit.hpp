@@ -21,17 +21,18 @@ inline Matrix cross_products(const Matrix& regressors, const Vector& target) {
 }
 
 /// Minimises sum (y - X b)^2 / noise^2 + sum (b / sd)^2.
-struct RidgeFit {
+struct PriorFit {
   Vector coefficients;
   Matrix covariance;  ///< of the coefficients, for residuals of standard deviation `noise`; empty unless asked for
 };
 
-inline RidgeFit ridge(const Matrix& products, const Vector& prior_sd, double noise, bool with_covariance = false) {
+inline PriorFit fit_with_prior(const Matrix& products, const Vector& prior_sd, double noise,
+                               bool with_covariance = false) {
   const Index p = prior_sd.size();
   Matrix normal = products.topLeftCorner(p, p);
   normal.diagonal().array() += noise * noise / prior_sd.array().square();
   const Eigen::LDLT<Matrix> factor(normal);
-  RidgeFit fit;
+  PriorFit fit;
   fit.coefficients = factor.solve(products.topRightCorner(p, 1));
   if (with_covariance) fit.covariance = noise * noise * factor.solve(Matrix::Identity(p, p));
   return fit;

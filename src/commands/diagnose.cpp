@@ -1,0 +1,95 @@
+#include <algorithm>
+
+#include "cli/campaign_options.hpp"
+#include "commands/commands.hpp"
+#include "report/diagnosis_report.hpp"
+#include "thermfit/effects/catalogue.hpp"
+#include "thermfit/gap/paired.hpp"
+#include "thermfit/io/diagnosis_json.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const details =
+    R"(Says where the gap between a simulator and the machine lies, which unmodelled effect causes it, and how far it shrinks once the effect is added: judged on batches not used for fitting.
+
+With --sim, the simulator is anybody's: only its output is read, one file a batch with the same names as the measured ones. Effects then act through the traces they leave in the outputs.
+
+The report gives one sentence first, then what was ruled out and why, what could not be told apart, the next experiment, data problems, and tables.
+Verdicts: none (no gap), miscalibration (the simulator's own parameters close it), effect, ambiguous (several remain), unknown (real, but nothing in the catalogue closes it).
+Exit codes: 0 none, miscalibration or effect; 1 ambiguous or unknown; 2 could not be done.)";
+
+std::vector<Option> options() {
+  std::vector<Option> all{
+      {"--sim", "PATH", "output of your own simulator: batches with the names of the measured ones", 0, true},
+      {"--effects", "NAME,…", "look for these effects only", 0, true},
+      {"--without", "NAME,…", "leave these effects out of the catalogue", 0, true},
+      {"--ambient", "NAME", "with --sim: the temperature column of the room (default: recognised)", 0, false},
+      {"--reference", "DEGC", "with --sim: reference temperature of expansion (default: 20)", 0, false},
+      {"--seed", "N", "seed of resampling (default: 1)", 0, false},
+      {"--threads", "N", "threads to use (default: all cores)", 0, false},
+      {"--json", "", "machine-readable result, thermfit-diagnosis/1", 0, false},
+      {"--output", "FILE", "write the result there instead of to stdout", 'o', false}};
+  for (Option& option : campaign_options()) all.push_back(std::move(option));
+  return all;
+}
+
+/// Names of effects, checked against the catalogue.
+std::vector<std::string> effect_names(const Arguments& arguments, const std::string& option) {
+  const std::vector<std::string> known = standard_effects().names();
+  std::vector<std::string> names = arguments.list(option);
+  for (const std::string& name : names) {
+    if (std::count(known.begin(), known.end(), name) > 0) continue;
+    std::string message = option + ": no effect is called '" + name + "'";
+    if (const auto near = nearest(name, known)) message += "; did you mean '" + *near + "'?";
+    for (std::size_t i = 0; i < known.size(); ++i) message += (i ? ", " : " Known: ") + known[i];
+    throw UsageError(message);
+  }
+  return names;
+}
+
+unsigned thread_count(const Arguments& arguments) {
+  return static_cast<unsigned>(arguments.integer("--threads", 1, 1024).value_or(0));
+}
+
+Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
+  PairedOptions options;
+  options.room = arguments.value_or("--ambient", "");
+  options.reference_degC = arguments.number("--reference", -273.15, 2000).value_or(20);
+  options.effects = effect_names(arguments, "--effects");
+  options.without = effect_names(arguments, "--without");
+  options.seed = static_cast<unsigned>(arguments.integer("--seed", 0, 2147483647).value_or(1));
+  options.threads = thread_count(arguments);
+  options.progress = [&console](const std::string& what) { console.progress(what); };
+  const Campaign real = read_campaign(arguments, console, arguments.positionals());
+  const Campaign sim = read_campaign(arguments, console, arguments.values("--sim"));
+  return diagnose_paired(real, sim, options);
+}
+
+Exit run_diagnose(const Arguments& arguments, Console& console) {
+  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (!arguments.has("--sim")) throw UsageError("diagnose needs --sim PATH");
+  const Diagnosis diagnosis = diagnose_outputs(arguments, console);
+  console.progress({});
+  if (arguments.has("--json"))
+    console.line(diagnosis_to_json(diagnosis).dump(1));
+  else
+    console.print(diagnosis_text(diagnosis));
+  const bool told = diagnosis.verdict != Verdict::ambiguous && diagnosis.verdict != Verdict::unknown;
+  return told ? Exit::done : Exit::negative;
+}
+
+}  // namespace
+
+Command diagnose_command() {
+  return {"diagnose",
+          "where the sim-to-real gap lies, which effect causes it, how far it shrinks",
+          "machine.json BATCH.csv … | --sim SIM BATCH.csv …",
+          details,
+          options(),
+          {{"thermfit diagnose --sim data/withheld/case-05/sim data/withheld/case-05/real",
+            "any simulator: its output beside the measurement"}},
+          run_diagnose};
+}
+
+}  // namespace thermfit::cli

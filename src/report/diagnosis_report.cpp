@@ -1,0 +1,299 @@
+#include "report/diagnosis_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/table.hpp"
+#include "thermfit/number.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+constexpr std::size_t width = 80;
+
+/// What each effect means for a reader who does not know its name.
+std::string meaning(const std::string& effect) {
+  static const std::vector<std::pair<std::string, std::string>> meanings{
+      {"heat-source", "heat that the simulator lacks"},
+      {"friction-law", "a heat source grows with another power of its input"},
+      {"coolant", "a coolant takes heat away"},
+      {"ambient-drift", "the room does not stay at its first temperature"},
+      {"forced-convection", "cooling grows with speed"},
+      {"natural-convection", "cooling grows with the temperature difference"},
+      {"radiation", "heat is radiated"},
+      {"joint-conductance", "a joint conducts better or worse as it warms"},
+      {"missing-link", "heat flows between parts that the simulator does not connect"},
+      {"thermal-memory", "a hidden mass stores heat"},
+      {"missing-expansion", "a part expands that the simulator leaves out"},
+      {"nonlinear-expansion", "the expansion is not proportional to temperature"},
+      {"speed-shift", "the spindle moves with speed at once"},
+      {"hysteresis", "play delays the displacement"},
+      {"initial-gradient", "the machine does not start at room temperature"},
+      {"sensor-offset", "the sensor reads a constant too much or too little"},
+      {"sensor-gain", "the sensor's scale is wrong"},
+      {"sensor-drift", "the sensor's zero wanders"},
+      {"sensor-lag", "the sensor follows its place late"},
+      {"probe-drift", "the displacement probe or its holder drifts"},
+      {"clock-offset", "the displacement log has another clock"}};
+  for (const auto& [name, text] : meanings)
+    if (name == effect) return text;
+  return "";
+}
+
+std::string percent(double share, int decimals = 0) { return fixed_text(100 * share, decimals) + " %"; }
+
+/// Probabilities are never told as certain.
+std::string confidence_text(double confidence) {
+  return confidence > .99 ? "above 99 %" : confidence < .01 ? "below 1 %" : percent(confidence);
+}
+
+std::string size_text(double rms) { return fixed_text(rms, std::abs(rms) < 10 ? 2 : 1); }
+
+std::string title_of(const std::string& effect, const std::string& location, const std::string& driver) {
+  std::string text = effect;
+  if (!location.empty()) text += " at " + location;
+  if (!driver.empty()) text += " (driven by " + driver + ")";
+  return text;
+}
+
+std::string parameter_text(const Estimate& one) {
+  std::string text = one.name + " = " + general_text(one.value, 3);
+  if (one.standard_error >= 0) text += " +- " + general_text(one.standard_error, 2);
+  return one.unit.empty() ? text : text + ' ' + one.unit;
+}
+
+std::string joined(const std::vector<std::string>& parts, const std::string& between = ", ") {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+/// "Z goes from 2.70 to 0.33 um rms on batches not used for fitting: it shrinks by 88 % (95 % interval 83 to 91 %)."
+std::string shrink_text(const Gap& gap) {
+  const std::string unit = ' ' + gap.unit;
+  return gap.output + " goes from " + size_text(gap.rms.calibrated) + " to " + size_text(gap.rms.with_effect) + unit +
+         " rms" +
+         (gap.held_out ? " on batches not used for fitting" : " (fit itself: too few batches to hold some back)") +
+         ": it shrinks by " + fixed_text(gap.shrink_percent, 0) + " % (95 % interval " +
+         fixed_text(gap.shrink_ci95_percent.low, 0) + " to " + fixed_text(gap.shrink_ci95_percent.high, 0) +
+         " %); noise is " + size_text(gap.rms.noise) + unit + ".";
+}
+
+std::string moved_most(const Diagnosis& diagnosis) {
+  std::vector<std::string> parts;
+  for (const CalibrationMove& move : diagnosis.calibration)
+    if (parts.size() < 3 && std::abs(move.prior_sds) >= 1)
+      parts.push_back(move.parameter + " (" + (move.prior_sds > 0 ? "+" : "") + fixed_text(move.prior_sds, 1) +
+                      " prior sd)");
+  return parts.empty() ? "" : " Moved most: " + joined(parts) + ".";
+}
+
+/// Where, when and with what a gap without a name goes.
+std::string whereabouts(const Diagnosis& diagnosis) {
+  std::string text;
+  if (!diagnosis.where.places.empty() && diagnosis.where.places[0].share > 0)
+    text +=
+        " It lies most at " + diagnosis.where.places[0].name + " (" + percent(diagnosis.where.places[0].share) + ").";
+  const ConditionShare* telling = nullptr;
+  for (const ConditionShare& one : diagnosis.where.conditions)
+    if (one.factor != "batch" && one.share_of_time > .02 && one.share > one.share_of_time &&
+        (!telling || one.share - one.share_of_time > telling->share - telling->share_of_time))
+      telling = &one;
+  if (telling) {
+    const std::string level = telling->is_range
+                                  ? general_text(telling->range.low, 5) + " to " + general_text(telling->range.high, 5)
+                                  : telling->level;
+    text += " " + percent(telling->share) + " of it arises at " + telling->factor + " " + level + ", in " +
+            percent(telling->share_of_time) + " of the time.";
+  }
+  return text;
+}
+
+std::string sentence(const Diagnosis& diagnosis) {
+  const Gap& gap = diagnosis.gap;
+  const std::string unit = ' ' + gap.unit;
+  switch (diagnosis.verdict) {
+    case Verdict::none:
+      return "There is no gap to explain: " + gap.output + " as simulated is off by " +
+             size_text(gap.rms.as_simulated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit + ".";
+    case Verdict::miscalibration:
+      return "The simulator is miscalibrated and lacks nothing: its own parameters take " + gap.output + " from " +
+             size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) + unit + " rms" +
+             (gap.held_out ? " on batches not used for fitting" : "") + "; noise is " + size_text(gap.rms.noise) +
+             unit + "." + moved_most(diagnosis);
+    case Verdict::unknown:
+      return "The gap is real and has no name: after calibration " + gap.output + " is off by " +
+             size_text(gap.rms.calibrated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit +
+             ", and nothing in the catalogue closes it" + (gap.held_out ? " on batches not used for fitting." : ".") +
+             whereabouts(diagnosis);
+    case Verdict::effect:
+    case Verdict::ambiguous:
+      break;
+  }
+  std::string text;
+  for (const FoundEffect& found : diagnosis.effects) {
+    text += text.empty() ? "" : " And ";
+    const std::string means = meaning(found.effect);
+    text += title_of(found.effect, found.location, found.driver) + (means.empty() ? "" : ": " + means) +
+            ", confidence " + confidence_text(found.confidence);
+    if (!found.same_place.empty()) text += " (place: or " + joined(found.same_place, " or ") + ")";
+    text += ".";
+  }
+  if (diagnosis.verdict == Verdict::ambiguous) text = "Several explanations fit these data; the best is " + text;
+  return text + " " + shrink_text(gap);
+}
+
+class Sections {
+ public:
+  void add(const std::string& title, const std::vector<std::string>& lines) {
+    if (lines.empty()) return;
+    text += '\n' + title + '\n';
+    for (const std::string& line : lines) text += wrap(" - " + line, width, 3);
+  }
+  std::string text;
+};
+
+std::vector<std::string> ruled_out(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const RuledOut& one : diagnosis.ruled_out)
+    if (lines.size() < 8) lines.push_back(title_of(one.effect, one.location, "") + ": " + one.reason);
+  if (diagnosis.ruled_out.size() > lines.size())
+    lines.push_back(std::to_string(diagnosis.ruled_out.size() - lines.size()) + " more: --json lists them");
+  return lines;
+}
+
+std::vector<std::string> not_told_apart(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const FoundEffect& found : diagnosis.effects) {
+    for (const Rival& rival : found.alternatives)
+      lines.push_back(title_of(rival.effect, rival.location, rival.driver) + ", " + confidence_text(rival.confidence) +
+                      " against " + confidence_text(found.confidence) + " for " +
+                      title_of(found.effect, found.location, ""));
+    if (!found.same_place.empty())
+      lines.push_back(found.effect + ": the place may as well be " + joined(found.same_place, ", "));
+  }
+  if (!diagnosis.where.agrees && !diagnosis.where.difference.empty()) lines.push_back(diagnosis.where.difference);
+  return lines;
+}
+
+std::vector<std::string> next_experiment(const NextExperiment& next) {
+  std::vector<std::string> lines;
+  double hours = 0;
+  for (const PlannedBlock& block : next.plan) {
+    lines.push_back(block.schedule + ": " + block.how + " (" + fixed_text(block.machine_hours, 1) + " machine hours)");
+    hours += block.machine_hours;
+  }
+  if (!next.why.empty()) lines.push_back(next.why);
+  if (next.separates.size() > 1 && std::isfinite(next.confusion_after))
+    lines.push_back("probability of taking one for the other: " + confidence_text(next.confusion_before) + " now, " +
+                    confidence_text(next.confusion_after) + " after these " + fixed_text(hours, 1) + " hours");
+  return lines;
+}
+
+std::vector<std::string> data_problems(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const DataProblem& one : diagnosis.data_problems) lines.push_back(one.place + ": " + one.what);
+  return lines;
+}
+
+std::string gap_table(const Diagnosis& diagnosis) {
+  Table table({"gap, rms", "as simulated", "calibrated", "with effect", "noise", "unit"});
+  const bool named = !diagnosis.effects.empty();
+  const auto add = [&](const std::string& name, const StagedGap& rms, const std::string& unit) {
+    table.add({name, size_text(rms.as_simulated), size_text(rms.calibrated), named ? size_text(rms.with_effect) : "-",
+               size_text(rms.noise), unit});
+  };
+  add(diagnosis.gap.output, diagnosis.gap.rms, diagnosis.gap.unit);
+  if (!diagnosis.gap.per_sensor.empty()) table.rule();
+  for (const ChannelGap& one : diagnosis.gap.per_sensor)
+    if (one.channel != diagnosis.gap.output) add(one.channel, one.rms, one.unit);
+  if (!diagnosis.gap.per_batch.empty()) table.rule();
+  for (const BatchGap& one : diagnosis.gap.per_batch)
+    add(diagnosis.gap.output + " in " + one.batch, one.rms, diagnosis.gap.unit);
+  return table.text();
+}
+
+std::string transfer_table(const Transfer& transfer) {
+  if (transfer.points.empty()) return "";
+  Table table({"trained on simulated, scored on real", "as simulated", "calibrated", "with effect"});
+  const auto row = [&](const std::string& name, const std::array<double, 3>& values) {
+    table.add({name, size_text(values[0]), size_text(values[1]), size_text(values[2])});
+  };
+  row("S_mean, um (points " + joined(transfer.points, " ") + ")", transfer.S_mean);
+  row("S_std, um", transfer.S_std);
+  return '\n' + table.text();
+}
+
+std::string period_text(Interval minutes) {
+  if (std::isinf(minutes.low)) return "offset of the whole batch";
+  if (std::isinf(minutes.high)) return "longer than " + general_text(minutes.low, 4) + " min";
+  return general_text(minutes.low, 4) + " to " + general_text(minutes.high, 4) + " min";
+}
+
+std::string where_table(const Where& where) {
+  Table table({"where the calibrated gap lies", "", "share", "of time"});
+  table.left(1);
+  std::string last;
+  const auto add = [&](const std::string& kind, const std::string& what, double share, const std::string& time) {
+    table.add({kind == last ? "" : kind, what, percent(share), time});
+    last = kind;
+  };
+  for (const NamedShare& one : where.stages)
+    if (one.share >= .01) add("stage", one.name, one.share, "");
+  std::size_t places = 0;
+  for (const NamedShare& one : where.places)
+    if (one.share >= .01 && places++ < 6) add("place", one.name, one.share, "");
+  for (const ConditionShare& one : where.conditions) {
+    const std::string level =
+        one.is_range ? general_text(one.range.low, 5) + " to " + general_text(one.range.high, 5) : one.level;
+    add(one.factor, level, one.share, percent(one.share_of_time));
+  }
+  for (const PeriodShare& one : where.frequency) add("period", period_text(one.period_min), one.share, "");
+  std::string text = '\n' + table.text();
+  if (where.chain.known)
+    text += wrap("The displacement gap is " + size_text(where.chain.total_um) +
+                     " um; with measured temperatures in the expansion sum " + size_text(where.chain.expansion_um) +
+                     " um of it remains (expansion and probe), the temperatures carry " +
+                     size_text(where.chain.temperature_um) + " um.",
+                 width, 0);
+  return text;
+}
+
+std::string calibration_table(const std::vector<CalibrationMove>& moves) {
+  Table table({"calibration moved most", "from", "to", "unit", "prior sds"});
+  std::size_t rows = 0;
+  for (const CalibrationMove& move : moves)
+    if (rows < 6 && std::abs(move.prior_sds) >= .5) {
+      table.add({move.parameter, general_text(move.from, 4), general_text(move.to, 4), move.unit,
+                 fixed_text(move.prior_sds, 1) + (move.pinned ? "" : " (not pinned)")});
+      ++rows;
+    }
+  return rows ? '\n' + table.text() : "";
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+  std::string text = wrap(sentence(diagnosis), width, 0);
+  for (const FoundEffect& found : diagnosis.effects) {
+    std::vector<std::string> parameters;
+    for (const Estimate& one : found.parameters) parameters.push_back(parameter_text(one));
+    if (!parameters.empty()) text += wrap(found.effect + ": " + joined(parameters) + ".", width, 0);
+  }
+  const Remaining& remaining = diagnosis.remaining;
+  if (diagnosis.verdict != Verdict::none && !remaining.looks_like.empty())
+    text += wrap("What remains: " + size_text(remaining.unexplained_um) + ' ' + diagnosis.gap.unit +
+                     " beyond noise; it looks like " + remaining.looks_like + ".",
+                 width, 0);
+  Sections sections;
+  sections.add("Ruled out", ruled_out(diagnosis));
+  sections.add("Not told apart by these data", not_told_apart(diagnosis));
+  sections.add("Next experiment", next_experiment(diagnosis.next_experiment));
+  sections.add("Data problems", data_problems(diagnosis));
+  sections.add("Weaker claims", diagnosis.weaker_claims);
+  text += sections.text + '\n' + gap_table(diagnosis) + transfer_table(diagnosis.gap.transfer) +
+          where_table(diagnosis.where) + calibration_table(diagnosis.calibration);
+  return text;
+}
+
+}  // namespace thermfit::cli
