@@ -99,7 +99,14 @@ const std::vector<Case> cases{
      "is "
      "a decimal number; else write thousands without separators"},
 
+    {"one name over text", "T1\nx;y,z\n",
+     "a.csv:2:5: 2 fields under 1 name: 'z' is too many; allowed: a field for each name; if the comma is the decimal "
+     "mark "
+     "too, save with semicolons; put text with commas in quotes"},
+
     // Roles and units.
+    {"a clock in an unknown unit", "time [fortnight],T1\n0,20\n",
+     "a.csv:1:1: time is in 'fortnight'; allowed: us, ms, s, min, h, d; name the unit in brackets behind the name"},
     {"an unknown unit", "time_min,T1 [degX]\n0,20\n",
      "a.csv:1:10: T1 is in 'degX'; allowed: degC, °C, C, degF, °F, F, K; name the unit in brackets behind the name"},
     {"a unit of another quantity", "time_min,T1,Z (degC)\n0,20,1\n",

@@ -109,6 +109,31 @@ TEST_CASE("names may hold separators, quotes, brackets and be written in other s
   CHECK_FALSE(batch.has_time());
 }
 
+TEST_CASE("numbers decide between two separators that both make a table", "[io]") {
+  const Batch batch = read_one("time_s;T1;flow, l/min\n0;20;1,5\n1;21;2,5\n");
+  CHECK(batch.temperatures.values == (Matrix(2, 1) << 20, 21).finished());
+  CHECK(batch.inputs.names == Names{"flow, l/min"});
+  CHECK(read_one("T1 [℃],\"Spindel 🌡\"\n20,1\n").inputs.names == Names{"Spindel 🌡"});
+}
+
+TEST_CASE("quotes around any field, text and batch too, change nothing", "[io]") {
+  CsvOptions options;
+  options.batch_column = "run";
+  const CsvReading reading =
+      read("run,time_s,T1,note\n\"a, \"\"b\"\"\",\"0\",\"20.5\",\"x, y\"\n\"a, \"\"b\"\"\",1,21,\n", options);
+  REQUIRE(reading.batches.size() == 1);
+  CHECK(reading.batches[0].name == "a, \"b\"");
+  CHECK(reading.batches[0].temperatures.values == (Matrix(2, 1) << 20.5, 21).finished());
+}
+
+TEST_CASE("a missing date-time is a missing value", "[io]") {
+  CsvOptions options;
+  options.missing = MissingValues::drop;
+  const CsvReading reading = read("stamp,T1\n2024-05-31T08:00,20\n,21\n2024-05-31T08:02,22\n", options);
+  CHECK(reading.batches[0].time_s == (Vector(2) << 0, 120).finished());
+  CHECK(reading.files[0].missing == 1);
+}
+
 TEST_CASE("roles follow the options: globs, order, inputs, no clock", "[io]") {
   const std::string text = "time_s,PT1,PT2,Z,Zb,rpm,note\n0,20,21,1,2,1000,a\n1,20,21,1,2,1000,b\n";
   CsvOptions options;
