@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "thermfit/fit/residuals.hpp"
 #include "thermfit/fit/standardise.hpp"
 #include "thermfit/model/latent_variables.hpp"
@@ -23,6 +25,16 @@ struct LinearFit {
   double degrees_of_freedom = 0;  ///< rows - 1 - parameters (MLR: rank; PLS, PCR: components; ridge: trace of the hat)
   Vector residual_deviation_um;   ///< S of eq. (10) per error, on the rows of the fit
 };
+
+/// A fitter may return a LinearFit or the bare LinearModel<>: either as a model, either as a fit.
+inline const LinearModel<>& model_of(const LinearFit& fit) { return fit.model; }
+inline const LinearModel<>& model_of(const LinearModel<>& model) { return model; }
+inline LinearFit fit_of(LinearFit fit) { return fit; }
+inline LinearFit fit_of(LinearModel<> model) {
+  LinearFit fit;
+  fit.model = std::move(model);
+  return fit;
+}
 
 /// Scores (latent variables) of rows: rows x points to rows x components, standardised units.
 inline Matrix scores(const LinearFit& fit, const Matrix& temperatures) {

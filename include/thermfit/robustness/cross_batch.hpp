@@ -22,13 +22,6 @@ struct BatchModel {
 
 namespace detail {
 
-inline LinearFit as_fit(LinearFit fit) { return fit; }
-inline LinearFit as_fit(LinearModel<> model) {
-  LinearFit fit;
-  fit.model = std::move(model);
-  return fit;
-}
-
 /// An Error that tells which batch it came from.
 template <class Work>
 auto in_batch(const std::string& name, Work&& work) {
@@ -54,7 +47,7 @@ std::vector<BatchModel> batch_models(const std::vector<Observations>& batches, c
   for (const Observations& batch : batches) {
     models.push_back(detail::in_batch(batch.name, [&] {
       std::vector<Index> points = select_points(rule, batch, count);
-      LinearFit fit = detail::as_fit(fitter(batch.moments.subset(points)));
+      LinearFit fit = fit_of(fitter(batch.moments.subset(points)));
       return BatchModel{std::move(points), std::move(fit)};
     }));
   }

@@ -54,7 +54,7 @@ LeftOut leave_one_batch_out(const std::vector<Moments>& batches, const Fitter& f
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       result.fits.push_back(fitter(rest));
     } else {
-      result.fits.push_back(detail::as_fit(fitter(others[i])));
+      result.fits.push_back(fit_of(fitter(others[i])));
     }
     result.residuals.push_back(residuals(result.fits.back().model, batches[i]));
   }
