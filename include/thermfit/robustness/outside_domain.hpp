@@ -1,0 +1,48 @@
+#pragma once
+
+#include "thermfit/model/training_domain.hpp"
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// How a row lies to a model's training domain, at the 99 % limits.
+struct OutsideDomain {
+  bool range = false;  ///< a point below its lowest or above its highest training value
+  bool t2 = false;     ///< familiar relations between the points, but further out
+  bool spe = false;    ///< relations between the points that training did not show
+  bool any() const { return range || t2 || spe; }
+};
+
+/// Judges one sample of the model's temperatures (sensors long). A limit of 0 means that there is nothing to judge.
+template <class Temperatures>
+OutsideDomain outside_domain(const TrainingDomain<>& domain, const Eigen::MatrixBase<Temperatures>& temperatures) {
+  const DomainDistance<> distance = domain.distance(temperatures);
+  OutsideDomain outside;
+  outside.range =
+      (temperatures.array() < domain.lowest.array()).any() || (temperatures.array() > domain.highest.array()).any();
+  outside.t2 = domain.t2_limit_99 > 0 && distance.t2 > domain.t2_limit_99;
+  outside.spe = domain.spe_limit_99 > 0 && distance.spe > domain.spe_limit_99;
+  return outside;
+}
+
+/// Shares of rows outside the training domain, 0…1.
+struct OutsideShares {
+  double range = 0, t2 = 0, spe = 0, any = 0;
+};
+
+/// Over rows x sensors of the model's temperatures; all 0 without rows.
+inline OutsideShares outside_shares(const TrainingDomain<>& domain, const Matrix& temperatures) {
+  OutsideShares shares;
+  if (temperatures.rows() == 0) return shares;
+  const double row = 1 / static_cast<double>(temperatures.rows());
+  for (Index r = 0; r < temperatures.rows(); ++r) {
+    const OutsideDomain outside = outside_domain(domain, temperatures.row(r).transpose());
+    shares.range += outside.range * row;
+    shares.t2 += outside.t2 * row;
+    shares.spe += outside.spe * row;
+    shares.any += outside.any() * row;
+  }
+  return shares;
+}
+
+}  // namespace thermfit
