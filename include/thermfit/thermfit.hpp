@@ -15,6 +15,7 @@
 #include "thermfit/robustness/leave_one_batch_out.hpp"
 #include "thermfit/robustness/outside_domain.hpp"
 #include "thermfit/select/correlation.hpp"
+#include "thermfit/select/fcgr.hpp"
 #include "thermfit/select/rule.hpp"
 #include "thermfit/types.hpp"
 #include "thermfit/version.hpp"

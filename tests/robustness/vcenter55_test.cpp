@@ -4,6 +4,7 @@
 #include "thermfit/number.hpp"
 #include "thermfit/robustness/cross_batch.hpp"
 #include "thermfit/select/correlation.hpp"
+#include "thermfit/select/fcgr.hpp"
 
 using namespace thermfit;
 
@@ -39,4 +40,11 @@ TEST_CASE("the sweep over points of vcenter55 gives the reference row to the pri
     CHECK(fixed_text(steps[k].robustness[0].per_model.S_mean, 2) == mean[k]);
     CHECK(fixed_text(steps[k].robustness[0].per_model.S_std, 2) == deviation[k]);
   }
+}
+
+TEST_CASE("least squares on two FCGR points of vcenter55 gives the reference row to the printed digits",
+          "[robustness]") {
+  const SweepStep step = cross_batch(vcenter55(), ByFcgr{}, 2, [](const Moments& m) { return fit_mlr(m); });
+  CHECK(fixed_text(step.robustness[0].per_model.S_mean, 2) == "6.91");
+  CHECK(fixed_text(step.robustness[0].per_model.S_std, 2) == "1.07");
 }

@@ -71,7 +71,7 @@ inline Spectrum spectrum(const StandardisedMoments& moments) {
 
 /// By singular values of the rows; resolves condition numbers up to about 1e13.
 inline Spectrum spectrum(const StandardisedRows& rows) {
-  const Eigen::BDCSVD<Matrix> svd(rows.x, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Matrix> svd(rows.x, Eigen::ComputeThinU | Eigen::ComputeThinV);
   Spectrum result;
   const Index rank = detail::above(svd.singularValues(), rank_tolerance(rows.x.cols()));
   const Vector singular = svd.singularValues().head(rank);

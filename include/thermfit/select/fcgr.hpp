@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "thermfit/moments/observations.hpp"
+
+namespace thermfit {
+
+/// Classes of temperature points, each in column order, classes in the order of their first member.
+using PointClasses = std::vector<std::vector<Index>>;
+
+/// Fuzzy clustering (Zadeh's similarity relation, Information Sciences 3, 1971): similarity of two points is the size
+/// of their correlation; its max–min transitive closure is cut at the lowest level that gives at least `classes`
+/// classes (points whose closure reaches the level share one). Ties may give more. Constant points belong to none.
+inline PointClasses fuzzy_classes(const Moments& moments, Index classes) {
+  std::vector<Index> points;
+  for (Index p = 0; p < moments.temperatures(); ++p) {
+    if (!moments.constant(p)) points.push_back(p);
+  }
+  const Index count = static_cast<Index>(points.size());
+  const Matrix products = moments.temperature_products()(points, points);
+  const Vector size = products.diagonal().cwiseSqrt();
+  Matrix closure = (size.cwiseInverse().asDiagonal() * products * size.cwiseInverse().asDiagonal()).cwiseAbs();
+  for (Index via = 0; via < count; ++via) {  // widest paths: r_ij = max_k min(r_ik, r_kj)
+    for (Index i = 0; i < count; ++i) {
+      for (Index j = 0; j < count; ++j) {
+        closure(i, j) = std::max(closure(i, j), std::min(closure(i, via), closure(via, j)));
+      }
+    }
+  }
+  closure.diagonal().setOnes();
+  const auto cut = [&](double level) {
+    PointClasses result;
+    std::vector<bool> taken(points.size(), false);
+    for (Index i = 0; i < count; ++i) {
+      if (taken[static_cast<std::size_t>(i)]) continue;
+      result.emplace_back();
+      for (Index j = i; j < count; ++j) {
+        if (taken[static_cast<std::size_t>(j)] || (j != i && closure(i, j) < level)) continue;
+        taken[static_cast<std::size_t>(j)] = true;
+        result.back().push_back(points[static_cast<std::size_t>(j)]);
+      }
+    }
+    return result;
+  };
+  std::vector<double> levels(closure.data(), closure.data() + closure.size());
+  std::sort(levels.begin(), levels.end());
+  PointClasses result;
+  for (auto level = levels.begin(); level != levels.end(); level = std::upper_bound(level, levels.end(), *level)) {
+    result = cut(*level);
+    if (static_cast<Index>(result.size()) >= classes) return result;
+  }
+  if (count > 0) result = cut(2);  // points equal to the last digit: each its own class
+  return result;
+}
+
+/// Grey relational grade (Deng, 1982) of every temperature point with error `response`, or the mean over all errors if
+/// that is negative: with series centred on their mean and divided by their range, and differences D_p(t) = |point -
+/// error|, `mean over t of (min D + c max D) / (D_p(t) + c max D)`, extremes over all points and rows, c the
+/// distinguishing coefficient. Temperatures rows x points, errors rows x responses; a constant series counts as zero.
+inline Vector grey_relational_grades(const Matrix& temperatures, const Matrix& errors, Index response = -1,
+                                     double coefficient = .5) {
+  const auto scaled = [](const auto& column) -> Vector {
+    const double range = column.maxCoeff() - column.minCoeff();
+    return (column.array() - column.mean()) * (range > 0 ? 1 / range : 0);
+  };
+  Vector grades = Vector::Zero(temperatures.cols());
+  if (temperatures.rows() == 0 || temperatures.cols() == 0) return grades;
+  const Index from = response < 0 ? 0 : response, to = response < 0 ? errors.cols() : response + 1;
+  for (Index e = from; e < to; ++e) {
+    const Vector error = scaled(errors.col(e));
+    Matrix difference(temperatures.rows(), temperatures.cols());
+    for (Index p = 0; p < temperatures.cols(); ++p) {
+      difference.col(p) = (scaled(temperatures.col(p)) - error).cwiseAbs();
+    }
+    const double least = difference.minCoeff(), most = coefficient * difference.maxCoeff();
+    if (!(most > 0)) return Vector::Ones(temperatures.cols());
+    grades += ((least + most) / (difference.array() + most)).colwise().mean().matrix().transpose() /
+              static_cast<double>(to - from);
+  }
+  return grades;
+}
+
+/// The baseline of the paper: fuzzy clustering, then in each class the point with the largest grey relational grade
+/// to the error; the first `count` classes. A selection rule (select/rule.hpp) that needs the rows.
+struct ByFcgr {
+  Index response = -1;      ///< error it looks at; negative: all
+  double coefficient = .5;  ///< distinguishing coefficient of the grey relational grade
+
+  std::vector<Index> operator()(const Observations& batch, Index count) const {
+    if (!batch.has_rows()) {
+      throw Error("fcgr", "moments only", "a batch with its rows", "grey relational grades need the series");
+    }
+    const Vector grades = grey_relational_grades(batch.temperatures, batch.errors, response, coefficient);
+    std::vector<Index> points;
+    for (const std::vector<Index>& members : fuzzy_classes(batch.moments, count)) {
+      if (static_cast<Index>(points.size()) == count) break;
+      points.push_back(
+          *std::max_element(members.begin(), members.end(), [&](Index a, Index b) { return grades(a) < grades(b); }));
+    }
+    return points;
+  }
+};
+
+}  // namespace thermfit
