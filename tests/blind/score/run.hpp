@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 
+#include "fresh.hpp"
 #include "mark.hpp"
 #include "thermfit/io/atomic_file.hpp"
 #include "thermfit/number.hpp"
@@ -41,6 +42,7 @@ struct Runner {
   std::string program;                 ///< the thermfit command, or a baseline
   std::vector<std::string> arguments;  ///< before the machine: `diagnose`, or the baseline's name
   fs::path results;
+  bool fresh = false;  ///< measure the shrink on fresh batches too: needs --write and the calibrate command
   int seconds_allowed = 120;
 
   /// The document for one case, from `results` when it is newer than the program and the case; nothing on failure.
@@ -50,21 +52,21 @@ struct Runner {
     const auto newer = [&](const fs::path& than) { return fs::last_write_time(kept) > fs::last_write_time(than); };
     if (!(fs::exists(kept) && fs::exists(clock) && newer(program) && newer(one.folder / "machine.json"))) {
       fs::create_directories(results);
-      const fs::path fresh = kept.string() + ".part";
+      const fs::path part = kept.string() + ".part";
       std::string line = "timeout " + std::to_string(seconds_allowed) + " " + quoted(program);
       for (const std::string& word : arguments) line += " " + quoted(word);
       line += " " + quoted((one.folder / "machine.json").string());
       for (const fs::path& file : batches_in(one.folder / "real")) line += " " + quoted(file.string());
       line += " --json";
       for (const std::string& word : options) line += " " + quoted(word);
-      line += " > " + quoted(fresh.string()) + " 2> " + quoted((results / (one.name + what + ".err")).string());
+      line += " > " + quoted(part.string()) + " 2> " + quoted((results / (one.name + what + ".err")).string());
       const auto before = std::chrono::steady_clock::now();
       const int status = std::system(line.c_str());
       const std::chrono::duration<double> took = std::chrono::steady_clock::now() - before;
       // Exit 1 is an answer (a gap without a name); anything above is none.
       if (status == -1 || !WIFEXITED(status) || WEXITSTATUS(status) > 1) return std::nullopt;
       thermfit::write_atomically(clock.string(), thermfit::fixed_text(took.count(), 3) + "\n");
-      fs::rename(fresh, kept);
+      fs::rename(part, kept);
     }
     std::ifstream time(clock);
     std::string text;
@@ -77,9 +79,29 @@ struct Runner {
     }
   }
 
+  std::string written(const Case& one) const { return (results / (one.name + ".machine.json")).string(); }
+
+  /// The calibrated machine against the one with the effect, both made from the recorded batches.
+  double shrink_on_fresh(const Case& one) const {
+    const std::string calibrated = (results / (one.name + ".calibrated.json")).string();
+    if (!fs::exists(calibrated) || fs::last_write_time(calibrated) < fs::last_write_time(program)) {
+      std::string line = quoted(program) + " calibrate " + quoted((one.folder / "machine.json").string());
+      for (const fs::path& file : batches_in(one.folder / "real")) line += " " + quoted(file.string());
+      if (std::system((line + " -o " + quoted(calibrated) + " > /dev/null 2>&1").c_str()) == -1) return NAN;
+    }
+    std::vector<std::string> batches;
+    for (const fs::path& file : batches_in(one.folder / "fresh")) batches.push_back(file.string());
+    try {
+      return 100 * (1 - gap_um(written(one), batches) / gap_um(calibrated, batches));
+    } catch (const std::exception&) {
+      return NAN;
+    }
+  }
+
   Mark judged(const Case& one, bool with_oracle) const {
     std::vector<std::string> options;
     if (!one.truth.without.empty()) options = {"--without", joined(one.truth.without, ",")};
+    if (fresh) options.insert(options.end(), {"--write", written(one)});
     double seconds = NAN, ignored;
     Mark mark;
     mark.failed = true;
@@ -91,6 +113,7 @@ struct Runner {
       }
     }
     mark.seconds = seconds;
+    if (fresh && mark.named && fs::is_directory(one.folder / "fresh")) mark.fresh_shrink_percent = shrink_on_fresh(one);
     if (with_oracle && !one.truth.effects.empty() && one.truth.detectable()) {
       std::vector<std::string> names;
       for (const TrueEffect& effect : one.truth.effects) names.push_back(effect.names.front());

@@ -58,6 +58,8 @@ Options parse(const std::vector<std::string>& words) {
   }
   if (options.runner.program.empty() || options.runner.results.empty() || options.folders.empty())
     throw std::runtime_error("usage: thermfit_blind_score --thermfit PROGRAM --results DIR FOLDER…");
+  if (options.jobs > 1 && options.runner.arguments[0] == "diagnose")
+    options.runner.arguments.insert(options.runner.arguments.end(), {"--threads", "1"});
   return options;
 }
 
