@@ -13,9 +13,4 @@ struct RowStorage<T, dynamic_size> {
   using type = std::vector<T>;
 };
 
-template <class T>
-void set_size(std::vector<T>& row, std::size_t size) {
-  row.resize(size);
-}
-
 }  // namespace thermfit::detail

@@ -17,9 +17,13 @@ struct RowStorage {
   using type = std::array<T, static_cast<std::size_t>(Size)>;
 };
 
-/// A fixed row has its size already; a dynamic one (dynamic_row.hpp) takes it.
+/// A fixed row has its size already; a dynamic one takes it.
 template <class T, std::size_t Size>
 constexpr void set_size(std::array<T, Size>&, std::size_t) noexcept {}
+template <class DynamicRow>
+void set_size(DynamicRow& row, std::size_t size) {
+  row.resize(size);
+}
 
 }  // namespace detail
 

@@ -1,0 +1,230 @@
+#include "export/c_source.hpp"
+#include "export/source_text.hpp"
+#include "export/test_vectors.hpp"
+#include "thermfit/number.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const body =
+#include "export/compensator_c.inc"
+    ;
+
+const char* const self_test = R"(
+#ifdef @N@_SELF_TEST
+/* Courses of readings with the offsets and states they must lead to: define @N@_SELF_TEST in one source file and call
+   @n@_self_test() on the machine itself. */
+#ifndef @N@_SELF_TEST_TOLERANCE
+#define @N@_SELF_TEST_TOLERANCE @tolerance@ /* um; other compilers may fuse multiplications and additions */
+#endif
+
+typedef struct {
+  uint32_t repeat;
+  uint32_t command; /* 0 none, 1 start, 2 stop: before the first repeat */
+  @n@_real temperatures_degC[@N@_SENSORS];
+  @n@_real offset_um[@N@_ERRORS];
+  uint32_t status;
+} @n@_vector;
+
+static const @n@_vector @n@_vectors[] = {
+@vectors@};
+#define @N@_VECTORS @vector_count@U
+
+/* 0 when every vector came out as it must; else the number, from 1, of the first that did not. */
+static inline uint32_t @n@_self_test(void) {
+  @n@_compensator self;
+  uint32_t failed = 0U;
+  uint32_t v;
+  @n@_initialise(&self);
+  for (v = 0U; (v < @N@_VECTORS) && (failed == 0U); v++) {
+    const @n@_vector *const vector = &@n@_vectors[v];
+    @n@_real offset[@N@_ERRORS];
+    uint32_t n;
+    uint32_t j;
+    if (vector->command == 1U) {
+      @n@_start(&self, NULL, NULL);
+    } else if (vector->command == 2U) {
+      @n@_stop(&self);
+    } else {
+      /* goes on */
+    }
+    for (n = 0U; n < vector->repeat; n++) {
+      (void)@n@_step(&self, vector->temperatures_degC, offset);
+    }
+    if (self.status != vector->status) {
+      failed = v + 1U;
+    }
+    for (j = 0U; j < @N@_ERRORS; j++) {
+      if (!(@n@_magnitude(self.offset_um[j] - vector->offset_um[j]) <= @N@_SELF_TEST_TOLERANCE)) {
+        failed = v + 1U;
+      }
+    }
+  }
+  return failed;
+}
+#endif /* @N@_SELF_TEST */
+)";
+
+/// The C text of values of one number type.
+template <class Scalar>
+struct CText {
+  std::string n;  ///< prefix
+
+  std::string literal(Scalar value) const {
+    if (std::isnan(value)) return "(" + n + "_real)NAN";
+    if (std::isinf(value)) return (value < 0 ? "-(" : "(") + n + "_real)INFINITY";
+    return real_text(value) + (std::is_same_v<Scalar, float> ? "F" : "");
+  }
+  std::string literal(std::uint32_t value) const { return std::to_string(value) + "U"; }
+  std::string literal(bool value) const { return value ? "true" : "false"; }
+  template <class T>
+  std::string literal(const std::vector<T>& values) const {
+    std::string text;
+    for (const auto& value : values) text += (text.empty() ? "{" : ", ") + literal(static_cast<const T&>(value));
+    return text + "}";
+  }
+  std::string literal(const std::vector<bool>& values) const {
+    std::string text;
+    for (const bool value : values) text += (text.empty() ? "{" : ", ") + literal(value);
+    return text + "}";
+  }
+  template <class T>
+  std::string array(const std::string& type, const std::string& name, const std::string& sizes, const T& values,
+                    const std::string& comment = "") const {
+    return "static const " + type + " " + n + "_" + name + sizes + " = " + literal(values) + ";" +
+           (comment.empty() ? "" : " /* " + comment + " */") + "\n";
+  }
+};
+
+template <class Scalar>
+std::string constants(const typename HostCompensator<Scalar>::Model& model,
+                      const typename HostCompensator<Scalar>::Settings& settings, const ExportRequest& request) {
+  const CText<Scalar> c{request.name};
+  const std::string n = request.name, N = upper_case(n), real = n + "_real";
+  const std::string per_sensor = "[" + N + "_SENSORS]", per_error = "[" + N + "_ERRORS]",
+                    per_component = "[" + N + "_COMPONENTS]";
+  const auto define = [&](const std::string& name, const std::string& value, const std::string& comment = "") {
+    return "#define " + N + "_" + name + " " + value + (comment.empty() ? "" : " /* " + comment + " */") + "\n";
+  };
+  std::string text;
+  text += define("SENSORS", c.literal(static_cast<std::uint32_t>(model.sensors())));
+  text += define("ERRORS", c.literal(static_cast<std::uint32_t>(model.errors())));
+  text += define("COMPONENTS", c.literal(static_cast<std::uint32_t>(model.domain.rotations.size())),
+                 "of the training domain");
+  text += define("RISE", c.literal(model.rise), "temperatures count from the first usable sample");
+  text += define("UNIT_PER_UM", c.literal(static_cast<Scalar>(request.unit.per_um)), request.unit.name + " per um");
+  text += define("LOST_AFTER_STEPS", c.literal(settings.patience.lost_after_steps));
+  text += define("RECOVER_AFTER_STEPS", c.literal(settings.patience.recover_after_steps));
+  text += define("OTHERS_MOVED_K", c.literal(settings.patience.others_moved_K));
+  text += define("HOLD_STEPS", c.literal(settings.hold_steps));
+  text += define("DOMAIN_IGNORE", "0U") + define("DOMAIN_WARN", "1U") + define("DOMAIN_SHRINK", "2U") +
+          define("DOMAIN_HOLD", "3U");
+  text += define("DOMAIN_POLICY", N + "_DOMAIN_" + upper_case(policy_name(settings.domain_policy)));
+  text += define("T2_LIMIT", c.literal(model.domain.t2_limit)) + define("SPE_LIMIT", c.literal(model.domain.spe_limit));
+
+  text += "\n/* The model: error[j] = intercept[j] + sum over i of coefficients[j][i] * temperature[i]. */\n";
+  text += c.array(real, "coefficients", per_error + per_sensor, model.equation.coefficients, "um/K");
+  text += c.array(real, "intercept_um", per_error, model.equation.intercept_um);
+  text += "/* The same without sensor i. */\n";
+  text += c.array("bool", "has_substitute", per_sensor, model.has_substitute);
+  std::vector<std::vector<std::vector<Scalar>>> coefficients;
+  std::vector<std::vector<Scalar>> intercepts;
+  for (const auto& substitute : model.substitutes) {
+    coefficients.push_back(substitute.coefficients);
+    intercepts.push_back(substitute.intercept_um);
+  }
+  text += c.array(real, "substitute_coefficients", per_sensor + per_error + per_sensor, coefficients);
+  text += c.array(real, "substitute_intercept_um", per_sensor + per_error, intercepts);
+  text += "/* The training domain. */\n";
+  text += c.array(real, "mean", per_sensor, model.domain.mean) +
+          c.array(real, "inverse_scale", per_sensor, model.domain.inverse_scale) +
+          c.array(real, "rotations", per_component + per_sensor, model.domain.rotations) +
+          c.array(real, "loadings", per_component + per_sensor, model.domain.loadings) +
+          c.array(real, "inverse_score_variance", per_component, model.domain.inverse_score_variance) +
+          c.array(real, "centre_um", per_error, model.centre_um);
+  text += "/* What a working sensor can do. */\n";
+  std::vector<Scalar> lowest, highest, step, clamp, slew;
+  std::vector<std::uint32_t> stuck;
+  for (const auto& sensor : settings.sensors) {
+    lowest.push_back(sensor.lowest_degC);
+    highest.push_back(sensor.highest_degC);
+    step.push_back(sensor.largest_step_K);
+    stuck.push_back(sensor.stuck_steps);
+  }
+  for (const auto& output : settings.outputs) {
+    clamp.push_back(output.clamp_um);
+    slew.push_back(output.slew_um_per_step);
+  }
+  text += c.array(real, "lowest_degC", per_sensor, lowest) + c.array(real, "highest_degC", per_sensor, highest) +
+          c.array(real, "largest_step_K", per_sensor, step) + c.array("uint32_t", "stuck_steps", per_sensor, stuck);
+  text += "/* What an axis may do. */\n";
+  text += c.array(real, "clamp_um", per_error, clamp) + c.array(real, "slew_um_per_step", per_error, slew);
+  return text;
+}
+
+template <class Scalar>
+std::string c_compensator(const ExportRequest& request, bool with_self_test) {
+  constexpr bool single = std::is_same_v<Scalar, float>;
+  auto model = narrow_model<Scalar>(request.trained, request.wishes.domain_limit);
+  const auto settings = settings_for<Scalar>(request.trained, request.wishes);
+  if (model.domain.rotations.empty()) {  // C has no arrays of length 0; one component of zeros adds nothing
+    model.domain.rotations = model.domain.loadings = {std::vector<Scalar>(model.sensors())};
+    model.domain.inverse_score_variance = {0};
+  }
+  const std::string n = request.name;
+  const CText<Scalar> c{n};
+  std::string vectors;
+  std::size_t count = 0;
+  if (with_self_test) {
+    for (const TestVector<Scalar>& vector : TestCourse<Scalar>(model, settings).run()) {
+      ++count;
+      vectors += "    {" + c.literal(vector.repeat) + ", " + c.literal(std::uint32_t{vector.command}) + ", " +
+                 c.literal(vector.readings_degC) + ", " + c.literal(vector.offset_um) + ", " +
+                 c.literal(vector.status) + "},\n";
+    }
+  }
+  const std::map<std::string, std::string> values{{"n", n},
+                                                  {"N", upper_case(n)},
+                                                  {"0", c.literal(Scalar(0))},
+                                                  {"1", c.literal(Scalar(1))},
+                                                  {"sqrt", single ? "sqrtf" : "sqrt"},
+                                                  {"REAL_MAX", single ? "FLT_MAX" : "DBL_MAX"},
+                                                  {"SIGN", request.wishes.sign == OutputSign::correction ? "-" : ""},
+                                                  {"sign", sign_name(request.wishes.sign)},
+                                                  {"period", exact_text(request.wishes.period_s)},
+                                                  {"UNIT", request.unit.name},
+                                                  {"unit", request.unit.identifier},
+                                                  {"vectors", vectors},
+                                                  {"vector_count", std::to_string(count)},
+                                                  {"tolerance", single ? "1.0e-3F" : "1.0e-9"}};
+  return "typedef " + std::string(single ? "float " : "double ") + n + "_real;\n\n" +
+         constants<Scalar>(model, settings, request) + fill_template(body, values) +
+         (with_self_test ? fill_template(self_test, values) : "");
+}
+
+}  // namespace
+
+std::string c_source(const ExportRequest& request, bool with_self_test) {
+  return request.single_precision ? c_compensator<float>(request, with_self_test)
+                                  : c_compensator<double>(request, with_self_test);
+}
+
+ControllerSource export_c(const ExportRequest& request) {
+  const std::string N = upper_case(request.name);
+  return "/* Thermal compensation, C99. " + request.name + "_initialise once, " + request.name + "_start, then one " +
+         request.name + "_step a cycle.\n" + fact_comment(request, "  ") + "*/\n#ifndef " + N + "_H\n#define " + N +
+         "_H\n\n" + R"(#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ + 0))
+#error "needs comparisons that NaN fails: build without -ffast-math and -ffinite-math-only"
+#endif
+
+)" + c_source(request, true) +
+         "\n#endif /* " + N + "_H */\n";
+}
+
+}  // namespace thermfit::cli

@@ -1,0 +1,119 @@
+#include "export/c_source.hpp"
+#include "export/source_text.hpp"
+#include "thermfit/error.hpp"
+#include "thermfit/number.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const component_body = R"(
+option singleton yes;
+function _ fp "reads the temperatures; steps the compensation every @period@ s";
+license "GPL";
+;;
+#include <rtapi_math.h>
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ + 0))
+#error "needs comparisons that NaN fails: build without -ffast-math and -ffinite-math-only"
+#endif
+
+@source@
+static @n@_compensator compensator;
+static double since_step_s = @period@; /* the first cycle steps */
+static bool running = false;
+
+FUNCTION(_) {
+  const double temperatures_degC[@N@_SENSORS] = {@inputs@};
+  double offset_@unit@[@N@_ERRORS];
+  if (!since_start) {
+    @n@_initialise(&compensator);
+    since_start = 1;
+  }
+  if (enable && !running) {
+    @n@_start(&compensator, NULL, NULL);
+  }
+  if (!enable && running) {
+    @n@_stop(&compensator);
+  }
+  running = enable;
+  since_step_s += fperiod;
+  if (since_step_s < @period@ * 0.9999) {
+    return;
+  }
+  since_step_s = (since_step_s < 1.5 * @period@) ? (since_step_s - @period@) : 0.0;
+  status = @n@_step(&compensator, temperatures_degC, offset_@unit@);
+  state = @N@_STATE(status);
+  sensor = @N@_SENSOR(status);
+  fault = @N@_FAULT(status);
+  ok = (state == @N@_TRACKING) && ((status & (@N@_OUTSIDE_DOMAIN | @N@_CLAMPED)) == 0U);
+@outputs@}
+)";
+
+std::string hal_name(std::string identifier) {
+  for (char& c : identifier) c = c == '_' ? '-' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return identifier;
+}
+
+std::string c_name(std::string hal) {
+  for (char& c : hal)
+    if (c == '-') c = '_';
+  return hal;
+}
+
+}  // namespace
+
+ControllerSource export_linuxcnc(const ExportRequest& given) {
+  ExportRequest request = given;
+  request.single_precision = false;  // HAL's float is a double
+  if (request.unit.identifier == "tenth_um")
+    throw Error("unit", "'0.1um'", "um, mm", "HAL offsets are in machine units: use mm for a metric machine");
+  std::string text = "component " + hal_name(request.name) + " \"Thermal compensation\";\ndescription \"\"\"\n";
+  for (const std::string& line : facts(request)) {
+    std::string safe = line;  // halcompile turns this into a manual page
+    for (char& c : safe)
+      if (c == '"') c = '\'';
+    text += safe + "\n";
+  }
+  text +=
+      "\nnet offset-<error>-counts to axis.<letter>.eoffset-counts, setp axis.<letter>.eoffset-scale to\n"
+      "counts-scale, set axis.<letter>.eoffset-enable; the INI needs [AXIS_<letter>]OFFSET_AV_RATIO.\n\"\"\";\n";
+  text += "pin in bit enable \"compensate; off ramps to zero\";\n";
+  std::string inputs, outputs;
+  for (const std::string& name : identifiers(request.trained.temperatures)) {
+    const std::string pin = "temperature-" + hal_name(name);
+    text += "pin in float " + pin + " \"degC\";\n";
+    inputs += (inputs.empty() ? "" : ", ") + c_name(pin);
+  }
+  const auto errors = identifiers(request.trained.errors);
+  for (std::size_t j = 0; j < errors.size(); ++j) {
+    const std::string pin = "offset-" + hal_name(errors[j]), index = "[" + std::to_string(j) + "]";
+    text += "pin out float " + pin + " \"" + request.unit.name + ", the " + sign_name(request.wishes.sign) + "\";\n";
+    text += "pin out s32 " + pin + "-counts \"the same in counts of counts-scale\";\n";
+    outputs += "  " + c_name(pin) + " = offset_" + request.unit.identifier + index + ";\n";
+    outputs += "  " + c_name(pin) + "_counts = (rtapi_s32)floor(offset_" + request.unit.identifier + index +
+               " / counts_scale + 0.5);\n";
+  }
+  text +=
+      "pin out u32 status \"status word: state 0-3, outside domain 4, clamped 5, slewing 6, sensor 8-15, fault "
+      "16-19\";\n"
+      "pin out u32 state \"0 off 1 starting 2 tracking 3 substituting 4 holding 5 fallback 6 stopping\";\n"
+      "pin out u32 sensor \"first sensor not used, from 1; 0 none\";\n"
+      "pin out u32 fault \"1 not finite 2 range 3 rate 4 stuck 5 recovering 6 no reference\";\n"
+      "pin out bit ok \"all sensors used, in the training domain, not clamped\";\n"
+      "param r float counts_scale = " +
+      real_text(request.unit.per_um * .1) + " \"" + request.unit.name +
+      " per count\";\nvariable int since_start = 0;\n";
+  return text + fill_template(component_body, {{"n", request.name},
+                                               {"N", upper_case(request.name)},
+                                               {"period", real_text(request.wishes.period_s)},
+                                               {"unit", request.unit.identifier},
+                                               {"source", c_source(request, false)},
+                                               {"inputs", inputs},
+                                               {"outputs", outputs}});
+}
+
+}  // namespace thermfit::cli
