@@ -8,6 +8,8 @@ const std::vector<Command>& all_commands() {
       check_command(),
       inspect_command(),
       diagnose_command(),
+      run_command(),
+      export_command(),
       // clang-format on
   };
   return commands;

@@ -36,4 +36,8 @@ ControllerSource export_linuxcnc(const ExportRequest& request);  ///< HAL compon
 ControllerSource export_onnx(const ExportRequest& request);      ///< bare model as ONNX, binary
 ControllerSource export_card(const ExportRequest& request);      ///< how to enter it by hand, per control
 
+std::vector<std::string> card_controls();
+/// The unit that a control counts offsets in; "um" for an unknown one.
+std::string card_unit(const std::string& control);
+
 }  // namespace thermfit::cli

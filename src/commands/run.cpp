@@ -1,0 +1,81 @@
+#include <cmath>
+
+#include "cli/command.hpp"
+#include "cli/compensation_options.hpp"
+#include "cli/line_source.hpp"
+#include "commands/commands.hpp"
+#include "run/live_compensation.hpp"
+#include "thermfit/io/model_json.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const details =
+    "Reads temperatures as CSV lines from standard input and answers each line with one, at once: for pipes from MQTT, "
+    "OPC UA or a data logger. The first line names the columns; those of the model are found by name (units in "
+    "brackets are converted), others are passed over. One line is one step of --period seconds.\n"
+    "\n"
+    "Answer: line number, offset of each error in um, state, status word, first sensor not used, why. A line that "
+    "cannot be read, or a cell that is no number, counts as readings that are missing: the offset is held, the answer "
+    "still comes. --watchdog S answers also when no line came for S seconds.\n"
+    "\n"
+    "--shadow applies nothing: offset columns are zero, `shadow_` columns tell what would have been applied; where "
+    "the input has a measured error of the same name, `remaining_` columns tell what would have been left of it, and a "
+    "summary is printed on stderr at the end.\n"
+    "Exit codes: 0 end of input; 2 the model or the first line could not be used, or the output is closed.";
+
+Exit run_run(const Arguments& arguments, Console& console) {
+  if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
+  const TrainedModel trained = load_model(arguments.positionals()[0]);
+  LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"));
+  const double watchdog_s = arguments.number("--watchdog", .001, 86400).value_or(0);
+
+  LineSource source(0);
+  std::string text;
+  do {
+    if (source.next(text, 0) != LineSource::Got::line)
+      throw Error("standard input", "no line", "a line of column names");
+  } while (live.is_comment(text));
+  live.read_header(text, source.line_number());
+  console.line(live.answer_header());
+  console.flush();
+  long bad_lines = 0;
+  for (;;) {
+    const LineSource::Got got = source.next(text, watchdog_s);
+    if (got == LineSource::Got::end) break;
+    if (got == LineSource::Got::line && live.is_comment(text)) continue;
+    const bool readable = got == LineSource::Got::line && live.read_readings(text);
+    if (got == LineSource::Got::line && !readable && bad_lines++ < 10)
+      console.note("standard input:" + std::to_string(source.line_number()) +
+                   ": not as many cells as the first line names; counts as missing readings");
+    if (!readable) live.lose_readings();
+    console.line(live.answer(source.line_number()));
+    console.flush();
+  }
+  if (bad_lines > 10) console.note(std::to_string(bad_lines) + " lines could not be read");
+  for (const std::string& remark : live.summary()) console.note(remark);
+  return Exit::done;
+}
+
+std::vector<Option> options() {
+  std::vector<Option> all{{"--shadow", "", "tell what would be applied, apply nothing", 0, false},
+                          {"--watchdog", "S", "answer with missing readings when no line came for so long", 0, false}};
+  for (Option& option : compensation_options()) all.push_back(std::move(option));
+  return all;
+}
+
+}  // namespace
+
+Command run_command() {
+  return {"run",
+          "compensate live: a line of temperatures in, a line with the offset out",
+          "MODEL.json",
+          details,
+          options(),
+          {{"thermfit run model.json < data/vcenter55/K02.csv", "the answers to a recorded batch"},
+           {"thermfit run model.json --shadow --period 300 --slew 0.1 < data/vcenter55/K02.csv",
+            "what would have been left of the measured error"}},
+          run_run};
+}
+
+}  // namespace thermfit::cli

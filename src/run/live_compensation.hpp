@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "thermfit/controller/compensator.hpp"
+#include "thermfit/controller/settings_for.hpp"
+#include "thermfit/io/units.hpp"
+
+namespace thermfit::cli {
+
+/// A compensator fed with lines of CSV: what `thermfit run` is apart from reading and writing.
+class LiveCompensation {
+ public:
+  LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow);
+  LiveCompensation(const LiveCompensation&) = delete;
+
+  static bool is_comment(std::string_view line);
+
+  /// Finds the model's columns, and in shadow mode measured errors. Throws Error on a missing or repeated name, a unit
+  /// that is no temperature, or a quote that is never closed. Then starts.
+  void read_header(const std::string& line, std::size_t line_number);
+
+  /// Takes the cells of the next line; cells that are no number are missing. False when the line has not as many cells
+  /// as the header.
+  bool read_readings(const std::string& line);
+  void lose_readings();
+
+  std::string answer_header() const;
+  /// Steps with what was read last and tells the result.
+  std::string answer(std::size_t line_number);
+  /// At the end: in shadow mode, what was measured and what would have been left.
+  std::vector<std::string> summary() const;
+
+ private:
+  using Device = Compensator<double, dynamic_size, dynamic_size, dynamic_size>;
+  struct Column {
+    std::size_t position;
+    Unit unit;
+  };
+  struct Measured {
+    std::optional<Column> column;
+    double value_um = 0, sum_squares = 0, remaining_squares = 0;
+    std::size_t rows = 0;
+  };
+
+  std::vector<std::string> temperatures_, errors_;
+  Device::Model model_;
+  Device::Settings settings_;
+  Device device_;
+  bool shadow_;
+  char separator_ = ',';
+  std::size_t cells_ = 0;
+  std::vector<Column> columns_;
+  std::vector<double> readings_;
+  std::vector<Measured> measured_;
+};
+
+}  // namespace thermfit::cli
