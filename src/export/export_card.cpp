@@ -106,7 +106,7 @@ std::string formula(const ExportRequest& request, Index error) {
   const bool rise = model.reference == TemperatureReference::rise;
   for (Index i = 0; i < model.model.sensors(); ++i) {
     const double slope = model.model.coefficients(i, error) * factor;
-    const std::string& name = model.temperatures[static_cast<std::size_t>(i)];
+    const std::string name = comment_text(model.temperatures[static_cast<std::size_t>(i)]);
     text += (slope < 0 ? " - " : " + ") + general_text(std::abs(slope), 9) + "*" +
             (rise ? "(" + name + " - " + name + "_start)" : name);
   }
@@ -144,7 +144,7 @@ ControllerSource export_card(const ExportRequest& request) {
       throw Error("clamp of " + errors[j], exact_text(limits.clamp_um) + " um",
                   "at most " + exact_text(control.most_um) + " um on " + control.title, "give a smaller --clamp");
     text += "\nAxis " + comment_text(errors[j]) + ", in " + request.unit.name +
-            ":\n\n    offset = " + comment_text(formula(request, static_cast<Index>(j))) + "\n    offset = limit(-" +
+            ":\n\n    offset = " + formula(request, static_cast<Index>(j)) + "\n    offset = limit(-" +
             amount(limits.clamp_um, request.unit) + ", offset, " + amount(limits.clamp_um, request.unit) +
             ")\n    at most " + amount(limits.slew_um_per_step, request.unit) + " from one write to the next, every " +
             exact_text(request.wishes.period_s) + " s\n    slope over the axis position: 0\n";

@@ -8,48 +8,54 @@ namespace {
 
 const char* const component_body = R"(
 option singleton yes;
+option no_convenience_defines yes;
 function _ fp "reads the temperatures; steps the compensation every @period@ s";
 license "GPL";
+include <rtapi_math.h>;
+include <float.h>;
+include <stdbool.h>;
+include <stddef.h>;
+include <stdint.h>;
 ;;
-#include <rtapi_math.h>
-#include <float.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ + 0))
-#error "needs comparisons that NaN fails: build without -ffast-math and -ffinite-math-only"
-#endif
-
 @source@
-static @n@_compensator compensator;
-static double since_step_s = @period@; /* the first cycle steps */
-static bool running = false;
+static @n@_compensator device; /* one component, one machine */
+static double since_step_s = @period@; /* so that the first cycle steps */
+static int ready = 0;
+static int running = 0;
+
+#define FUNCTION(name) static void name(struct __comp_state *__comp_inst, long period)
 
 FUNCTION(_) {
+  const double period_s = (double)period * 1e-9;
+  const int enable = *__comp_inst->enable;
   const double temperatures_degC[@N@_SENSORS] = {@inputs@};
   double offset_@unit@[@N@_ERRORS];
-  if (!since_start) {
-    @n@_initialise(&compensator);
-    since_start = 1;
+  uint32_t status;
+  if (!ready) {
+    @n@_initialise(&device);
+    ready = 1;
   }
   if (enable && !running) {
-    @n@_start(&compensator, NULL, NULL);
+    @n@_start(&device, NULL, NULL);
   }
   if (!enable && running) {
-    @n@_stop(&compensator);
+    @n@_stop(&device);
   }
   running = enable;
-  since_step_s += fperiod;
-  if (since_step_s < @period@ * 0.9999) {
+  since_step_s += period_s;
+  if (since_step_s < @period@ - 0.5 * period_s) {
     return;
   }
-  since_step_s = (since_step_s < 1.5 * @period@) ? (since_step_s - @period@) : 0.0;
-  status = @n@_step(&compensator, temperatures_degC, offset_@unit@);
-  state = @N@_STATE(status);
-  sensor = @N@_SENSOR(status);
-  fault = @N@_FAULT(status);
-  ok = (state == @N@_TRACKING) && ((status & (@N@_OUTSIDE_DOMAIN | @N@_CLAMPED)) == 0U);
+  since_step_s -= @period@;
+  if (since_step_s > @period@) {
+    since_step_s = 0.0; /* the thread is slower than the compensation */
+  }
+  status = @n@_step(&device, temperatures_degC, offset_@unit@);
+  *__comp_inst->status = status;
+  *__comp_inst->state = @N@_STATE(status);
+  *__comp_inst->sensor = @N@_SENSOR(status);
+  *__comp_inst->fault = @N@_FAULT(status);
+  *__comp_inst->ok = (@N@_STATE(status) == @N@_TRACKING) && ((status & (@N@_OUTSIDE_DOMAIN | @N@_CLAMPED)) == 0U);
 @outputs@}
 )";
 
@@ -86,16 +92,16 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
   for (const std::string& name : identifiers(request.trained.temperatures)) {
     const std::string pin = "temperature-" + hal_name(name);
     text += "pin in float " + pin + " \"degC\";\n";
-    inputs += (inputs.empty() ? "" : ", ") + c_name(pin);
+    inputs += (inputs.empty() ? "*__comp_inst->" : ", *__comp_inst->") + c_name(pin);
   }
   const auto errors = identifiers(request.trained.errors);
   for (std::size_t j = 0; j < errors.size(); ++j) {
     const std::string pin = "offset-" + hal_name(errors[j]), index = "[" + std::to_string(j) + "]";
     text += "pin out float " + pin + " \"" + request.unit.name + ", the " + sign_name(request.wishes.sign) + "\";\n";
     text += "pin out s32 " + pin + "-counts \"the same in counts of counts-scale\";\n";
-    outputs += "  " + c_name(pin) + " = offset_" + request.unit.identifier + index + ";\n";
-    outputs += "  " + c_name(pin) + "_counts = (rtapi_s32)floor(offset_" + request.unit.identifier + index +
-               " / counts_scale + 0.5);\n";
+    outputs += "  *__comp_inst->" + c_name(pin) + " = offset_" + request.unit.identifier + index + ";\n";
+    outputs += "  *__comp_inst->" + c_name(pin) + "_counts = (rtapi_s32)floor(offset_" + request.unit.identifier + index +
+               " / __comp_inst->counts_scale + 0.5);\n";
   }
   text +=
       "pin out u32 status \"status word: state 0-3, outside domain 4, clamped 5, slewing 6, sensor 8-15, fault "
@@ -106,7 +112,7 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
       "pin out bit ok \"all sensors used, in the training domain, not clamped\";\n"
       "param r float counts_scale = " +
       real_text(request.unit.per_um * .1) + " \"" + request.unit.name +
-      " per count\";\nvariable int since_start = 0;\n";
+      " per count\";\n";
   return text + fill_template(component_body, {{"n", request.name},
                                                {"N", upper_case(request.name)},
                                                {"period", real_text(request.wishes.period_s)},

@@ -115,7 +115,7 @@ class StWriter {
   void line(const std::string& text) {
     const auto starts = [&](const char* word) { return text.rfind(word, 0) == 0; };
     const bool closed_in_line = text.find("END_IF;") != std::string::npos && !starts("END_IF");
-    if (starts("END_") || starts("ELSE") || starts("ELSIF")) indent_ -= 2;
+    if ((starts("END_") && !starts("END_FUNCTION")) || starts("ELSE") || starts("ELSIF")) indent_ -= 2;
     text_ += std::string(indent_, ' ') + text + '\n';
     if (!closed_in_line && (starts("IF ") || starts("ELSE") || starts("ELSIF") || starts("CASE") || starts("VAR")))
       indent_ += 2;
