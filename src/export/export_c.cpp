@@ -116,7 +116,6 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   text += define("LOST_AFTER_STEPS", c.literal(settings.patience.lost_after_steps));
   text += define("RECOVER_AFTER_STEPS", c.literal(settings.patience.recover_after_steps));
   text += define("OTHERS_MOVED_K", c.literal(settings.patience.others_moved_K));
-  text += define("HOLD_STEPS", c.literal(settings.hold_steps));
   text += define("DOMAIN_IGNORE", "0U") + define("DOMAIN_WARN", "1U") + define("DOMAIN_SHRINK", "2U") +
           define("DOMAIN_HOLD", "3U");
   text += define("DOMAIN_POLICY", N + "_DOMAIN_" + upper_case(policy_name(settings.domain_policy)));
@@ -158,6 +157,7 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   text += c.array(real, "lowest_degC", per_sensor, lowest) + c.array(real, "highest_degC", per_sensor, highest) +
           c.array(real, "largest_step_K", per_sensor, step) + c.array("uint32_t", "stuck_steps", per_sensor, stuck);
   text += "/* What an axis may do. */\n";
+  text += "static const uint32_t " + n + "_hold_steps = " + c.literal(settings.hold_steps) + ";\n";
   text += c.array(real, "clamp_um", per_error, clamp) + c.array(real, "slew_um_per_step", per_error, slew);
   return text;
 }

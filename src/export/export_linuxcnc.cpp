@@ -100,8 +100,8 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
     text += "pin out float " + pin + " \"" + request.unit.name + ", the " + sign_name(request.wishes.sign) + "\";\n";
     text += "pin out s32 " + pin + "-counts \"the same in counts of counts-scale\";\n";
     outputs += "  *__comp_inst->" + c_name(pin) + " = offset_" + request.unit.identifier + index + ";\n";
-    outputs += "  *__comp_inst->" + c_name(pin) + "_counts = (rtapi_s32)floor(offset_" + request.unit.identifier + index +
-               " / __comp_inst->counts_scale + 0.5);\n";
+    outputs += "  *__comp_inst->" + c_name(pin) + "_counts = (rtapi_s32)floor(offset_" + request.unit.identifier +
+               index + " / __comp_inst->counts_scale + 0.5);\n";
   }
   text +=
       "pin out u32 status \"status word: state 0-3, outside domain 4, clamped 5, slewing 6, sensor 8-15, fault "
@@ -111,8 +111,7 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
       "pin out u32 fault \"1 not finite 2 range 3 rate 4 stuck 5 recovering 6 no reference\";\n"
       "pin out bit ok \"all sensors used, in the training domain, not clamped\";\n"
       "param r float counts_scale = " +
-      real_text(request.unit.per_um * .1) + " \"" + request.unit.name +
-      " per count\";\n";
+      real_text(request.unit.per_um * .1) + " \"" + request.unit.name + " per count\";\n";
   return text + fill_template(component_body, {{"n", request.name},
                                                {"N", upper_case(request.name)},
                                                {"period", real_text(request.wishes.period_s)},

@@ -1,0 +1,3 @@
+#include <cstdio>
+
+void write_text(const char* text) { std::fputs(text, stdout); }

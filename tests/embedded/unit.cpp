@@ -1,0 +1,19 @@
+/// All of the controller headers in one object, as a controller would build them: its symbols, size and stack are
+/// judged.
+
+#include "walk_float.hpp"
+
+namespace {
+walk_float::Compensator device(walk_float::model, walk_float::settings);
+}
+
+extern "C" bool controller_start() { return device.start(); }
+extern "C" bool controller_start_at(const walk_float::Compensator::Offsets& offsets,
+                                    const walk_float::Compensator::Temperatures& zero) {
+  return device.start(offsets, zero);
+}
+extern "C" void controller_stop() { device.stop(); }
+extern "C" std::uint32_t controller_step(const walk_float::Compensator::Temperatures& readings) {
+  return device.step(readings).word;
+}
+extern "C" float controller_offset(std::size_t error) { return device.offset_um()[error]; }
