@@ -3,15 +3,20 @@
 namespace thermfit::cli {
 
 const std::vector<Command>& all_commands() {
+  // In the order of the work, one a line.
+  // clang-format off
   static const std::vector<Command> commands{
-      // clang-format off: one a line, in the order of the work
       check_command(),
+      rank_command(),
+      fit_command(),
+      predict_command(),
+      study_command(),
       inspect_command(),
       diagnose_command(),
       run_command(),
       export_command(),
-      // clang-format on
   };
+  // clang-format on
   return commands;
 }
 

@@ -105,7 +105,7 @@ class LayoutMaker {
     assign_time();
     // Errors come first, so that `--temperatures '*'` leaves them alone.
     const auto errors = options_.errors.empty() ? by_default(is_error_name, "a thermal error")
-                                                : choose(options_.errors, "--errors", "a thermal error");
+                                                : choose(wanted_errors(), "--errors", "a thermal error");
     const auto temperatures = options_.temperatures.empty()
                                   ? by_default(is_temperature_name, "a temperature")
                                   : choose(options_.temperatures, "--temperatures", "a temperature");
@@ -170,6 +170,15 @@ class LayoutMaker {
         throw Error(name_, "no column of numbers is like " + shown(pattern) + " (" + option + ")", name_list(names()));
     }
     return chosen;
+  }
+
+  std::vector<std::string> wanted_errors() const {
+    if (!options_.errors_may_lack) return options_.errors;
+    std::vector<std::string> there;
+    for (const std::string& name : options_.errors)
+      if (std::any_of(header_.columns.begin(), header_.columns.end(), [&](const auto& c) { return c.is_called(name); }))
+        there.push_back(name);
+    return there;
   }
 
   static bool is_temperature_name(const std::string& name) {

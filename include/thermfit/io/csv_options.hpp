@@ -25,6 +25,7 @@ struct CsvOptions {
   std::string time_unit;                           ///< for a time column that does not name its unit; empty: min
   std::vector<std::string> temperatures;           ///< empty: `T` and digits
   std::vector<std::string> errors;                 ///< empty: those of `X`, `Y`, `Z` that there are
+  bool errors_may_lack = false;                    ///< of `errors`, only those that a file has are read
   std::optional<std::vector<std::string>> inputs;  ///< absent: every other column of numbers
   std::string batch_column;                        ///< splits a file into batches by its value; empty: one batch
   MissingValues missing = MissingValues::error;

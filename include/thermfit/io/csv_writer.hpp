@@ -7,8 +7,6 @@
 
 namespace thermfit {
 
-namespace detail {
-
 /// A name as a CSV field: in quotes where it needs them.
 inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",;\t\"") == std::string::npos && text.rfind('#', 0) != 0 && !text.empty() &&
@@ -18,8 +16,6 @@ inline std::string csv_field(const std::string& text) {
   for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
   return result + '"';
 }
-
-}  // namespace detail
 
 /// A batch as CSV that read_campaign reads back: `time_s`, temperatures, errors, inputs. With `decimals` below 0 every
 /// number is the shortest text that gives the same double again; missing values are empty.
@@ -36,7 +32,7 @@ inline std::string write_csv(const Batch& batch, int decimals = -1) {
   if (batch.has_time()) field("time_s");
   const Channels* const groups[] = {&batch.temperatures, &batch.errors, &batch.inputs};
   for (const Channels* group : groups)
-    for (const std::string& name : group->names) field(detail::csv_field(name));
+    for (const std::string& name : group->names) field(csv_field(name));
   text += '\n';
   for (Index row = 0; row < batch.rows(); ++row) {
     separator = "";

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "thermfit/fit/fit.hpp"
+#include "thermfit/fit/ridge_penalty.hpp"
+#include "thermfit/robustness/cross_batch.hpp"
+#include "thermfit/robustness/leave_one_batch_out.hpp"
+#include "thermfit/select/correlation.hpp"
+#include "thermfit/select/fcgr.hpp"
+
+namespace thermfit {
+
+/// How temperature points are chosen in a study.
+enum class Selection { correlation, fcgr };
+
+/// "correlation", "fcgr", as in the model file.
+inline const char* name(Selection selection) { return selection == Selection::fcgr ? "fcgr" : "correlation"; }
+
+/// What a study varies and what it holds.
+struct StudyOptions {
+  Index points = 2;        ///< temperature points of every batch's model (the paper's best)
+  Index most_points = 0;   ///< the sweep goes from 1 to this; 0: all there are
+  FitOptions fit;          ///< components, penalty, scaling
+  bool own_batch = false;  ///< whether a model's own batch counts in S_mean and S_std
+};
+
+/// A method and a selection rule judged across batches at every number of points.
+struct StudiedMethod {
+  Method method;
+  Selection selection;
+  Index components = 0;                           ///< fixed number of latent variables; 0: by the study's rule
+  std::vector<std::optional<SweepStep>> sweep{};  ///< entry k - 1: k points; empty where the method has no answer
+  std::string refusal{};                          ///< why the first empty step is empty
+  Index points = 0;                               ///< of `chosen`
+
+  /// The step at the study's number of points, if there is one.
+  const SweepStep* chosen() const {
+    const auto k = static_cast<std::size_t>(points);
+    return k >= 1 && k <= sweep.size() && sweep[k - 1] ? &*sweep[k - 1] : nullptr;
+  }
+};
+
+/// One row of the leave-one-batch-out table: a method on all given points.
+struct LeftOutMethod {
+  Method method;
+  Index components = 0;  ///< of PLS and PCR
+  std::optional<LeftOut> result;
+  std::string refusal;
+};
+
+/// The paper's whole comparison on one campaign.
+struct Study {
+  StudyOptions options;
+  Index points = 0;                     ///< temperature points there are
+  std::vector<Matrix> correlations;     ///< per batch: points x errors, eq. (1)
+  std::vector<StudiedMethod> methods;   ///< PLS and MLR on correlated points first
+  std::vector<LeftOutMethod> left_out;  ///< every batch predicted by a model of all the others
+};
+
+namespace detail {
+
+template <class Rule>
+StudiedMethod study_method(const std::vector<Observations>& batches, StudiedMethod studied, const Rule& rule,
+                           const StudyOptions& options, Index most_points) {
+  studied.points = options.points;
+  const auto fitter = [&](const Moments& moments) {
+    FitOptions one_batch = options.fit;
+    if (studied.components > 0) one_batch.components = ComponentRule::fixed(studied.components);
+    if (studied.method == Method::ridge && !one_batch.ridge_lambda)
+      one_batch.ridge_lambda = hoerl_kennard_baldwin(moments);
+    return fit(studied.method, moments, one_batch);
+  };
+  for (Index k = 1; k <= most_points; ++k) {
+    try {
+      studied.sweep.emplace_back(cross_batch(batches, rule, k, fitter, options.own_batch));
+    } catch (const Error& error) {
+      studied.sweep.emplace_back();
+      if (studied.refusal.empty()) studied.refusal = error.what();
+    }
+  }
+  return studied;
+}
+
+inline LeftOutMethod leave_out(const std::vector<Observations>& batches, Method method, Index components,
+                               FitOptions options) {
+  if (components > 0) options.components = ComponentRule::fixed(components);
+  LeftOutMethod row{method, components, {}, {}};
+  try {
+    row.result = leave_one_batch_out(moments_of(batches),
+                                     [&](const std::vector<Moments>& others) { return fit(method, others, options); });
+  } catch (const Error& error) {
+    row.refusal = error.what();
+  }
+  return row;
+}
+
+}  // namespace detail
+
+/// Steps 1 to 5 of the paper on `batches`: selection and fit in every batch, S of every model on every batch, S_mean
+/// and S_std at 1 … p points, for PLS (by the component rule, and with one component as printed in the paper), MLR, PCR
+/// and ridge on correlated points and for MLR on FCGR points; then every batch left out once, on all points. A method
+/// that refuses (condition number, too few classes) is an empty step with its reason, not the end of the study. Fewer
+/// than two batches: Error. FCGR needs rows. Allocates.
+inline Study study(const std::vector<Observations>& batches, const StudyOptions& options = {}) {
+  if (batches.size() < 2)
+    throw Error("study", std::to_string(batches.size()) + " batch", "2 or more",
+                "robustness is how a model does on batches it was not made from");
+  Study result{options, batches.front().moments.temperatures(), {}, {}, {}};
+  if (options.points < 1 || options.points > result.points)
+    throw Error("number of points", std::to_string(options.points), "1 to " + std::to_string(result.points));
+  const Index most = options.most_points > 0 ? std::min(options.most_points, result.points) : result.points;
+  for (const Observations& batch : batches) result.correlations.push_back(correlations(batch.moments));
+  const auto add = [&](Method method, Selection selection, Index components, const auto& rule) {
+    result.methods.push_back(detail::study_method(batches, {method, selection, components}, rule, options, most));
+  };
+  add(Method::pls, Selection::correlation, 0, ByCorrelation{});
+  add(Method::pls, Selection::correlation, 1, ByCorrelation{});
+  add(Method::mlr, Selection::correlation, 0, ByCorrelation{});
+  add(Method::pcr, Selection::correlation, 0, ByCorrelation{});
+  add(Method::ridge, Selection::correlation, 0, ByCorrelation{});
+  add(Method::mlr, Selection::fcgr, 0, ByFcgr{});
+
+  result.left_out.push_back(detail::leave_out(batches, Method::mlr, 0, options.fit));
+  for (Index a = 1; a <= std::min<Index>(result.points, 6); ++a)
+    result.left_out.push_back(detail::leave_out(batches, Method::pls, a, options.fit));
+  for (Index a = 1; a <= std::min<Index>(result.points, 3); ++a)
+    result.left_out.push_back(detail::leave_out(batches, Method::pcr, a, options.fit));
+  result.left_out.push_back(detail::leave_out(batches, Method::ridge, 0, options.fit));
+  return result;
+}
+
+}  // namespace thermfit

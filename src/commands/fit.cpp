@@ -1,0 +1,138 @@
+#include <filesystem>
+
+#include "cli/campaign_options.hpp"
+#include "cli/table.hpp"
+#include "commands/commands.hpp"
+#include "commands/fit_options.hpp"
+#include "report/model_report.hpp"
+#include "thermfit/fit/jackknife.hpp"
+#include "thermfit/fit/train.hpp"
+#include "thermfit/io/model_json.hpp"
+#include "thermfit/number.hpp"
+#include "thermfit/select/fcgr.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const details =
+    "Fits one model to all batches together and prints it: equation, coefficients, training domain, substitutes for "
+    "lost sensors and, from three batches on, how far each coefficient moves when a batch is left out (jackknife, 95 % "
+    "interval). -o saves it as thermfit-model/1 for predict, run and export.\n"
+    "\n"
+    "Points are the --points most sensitive ones (see rank), or all that --temperatures names with --points all. "
+    "--each-batch fits every batch by itself and saves one model a batch in --output-folder. Nearly dependent "
+    "temperatures make MLR refuse the fast way over moments; --row-wise goes over the rows by QR.\n"
+    "--json prints the model document instead of words.";
+
+std::vector<Index> chosen_points(const Campaign& campaign, const Arguments& arguments, TrainingPlan& plan) {
+  const Index count = require_points(arguments, campaign, 2);
+  const std::string rule = arguments.choice("--rule", {"correlation", "fcgr"}, "correlation");
+  if (count == campaign.front().temperatures.count()) {
+    plan.selection = arguments.has("--temperatures") ? "given" : "all";
+    return {};
+  }
+  plan.selection = rule;
+  const Observations all = merged(observe(campaign, plan.reference));
+  return rule == "fcgr" ? ByFcgr{}(all, count) : ByCorrelation{}(all, count);
+}
+
+void print_jackknife(const Campaign& campaign, const TrainedModel& model, const TrainingPlan& plan, Console& console) {
+  if (campaign.size() < 3) return;
+  std::vector<Moments> batches;
+  for (const Observations& batch : observe(campaign, plan.reference))
+    batches.push_back(plan.points.empty() ? batch.moments : batch.moments.subset(plan.points));
+  FitOptions same = plan.options;
+  if (model.components > 0) same.components = ComponentRule::fixed(model.components);
+  same.ridge_lambda = model.ridge_lambda;
+  const CoefficientSpread spread = jackknife(batches, [&](const Moments& m) { return fit(plan.method, m, same); });
+  const Matrix half = spread.half_width(.95), p = spread.p_values();
+  console.line("\nCoefficients with 95 % intervals from leaving batches out, um/K:");
+  std::vector<std::string> header{"point"};
+  for (const std::string& error : model.errors) header.insert(header.end(), {error, "+-", "p"});
+  Table table(header);
+  for (Index i = 0; i < half.rows(); ++i) {
+    std::vector<std::string> row{model.temperatures[static_cast<std::size_t>(i)]};
+    for (Index e = 0; e < half.cols(); ++e) {
+      row.push_back(fixed_text(model.model.coefficients(i, e), 3));
+      row.push_back(fixed_text(half(i, e), 3));
+      row.push_back(p(i, e) < .001 ? "<.001" : fixed_text(p(i, e), 3));
+    }
+    table.add(row);
+  }
+  console.print(table.text(2));
+}
+
+Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan plan, Console& console) {
+  const auto folder = arguments.value("--output-folder");
+  std::vector<std::pair<std::string, TrainedModel>> models;
+  for (const Batch& batch : campaign) {
+    plan.points = chosen_points({batch}, arguments, plan);
+    if (plan.method == Method::ridge && !arguments.has("--ridge-lambda"))
+      throw UsageError("--each-batch with ridge needs --ridge-lambda: one batch cannot choose a penalty");
+    models.emplace_back(batch.name, train({batch}, plan));
+  }
+  if (folder) std::filesystem::create_directories(*folder);
+  for (const auto& [name, model] : models) {
+    if (folder) save_model(model, (std::filesystem::path(*folder) / (name + ".json")).string());
+    for (Index e = 0; e < model.model.errors(); ++e)
+      console.print(wrap(
+          name + ": " + model_equation(model, e) + "   (S " + fixed_text(model.residual_deviation_um(e), 2) + " um)",
+          80, 4));
+  }
+  return Exit::done;
+}
+
+Exit run_fit(const Arguments& arguments, Console& console) {
+  const Campaign campaign = read_campaign(arguments, console, arguments.positionals());
+  TrainingPlan plan;
+  plan.options = fit_options(arguments);
+  plan.reference = temperature_reference(arguments);
+  plan.row_wise = arguments.has("--row-wise");
+  const std::string method = arguments.choice("--method", {"pls", "mlr", "pcr", "ridge"}, "pls");
+  for (const Method one : {Method::pls, Method::mlr, Method::pcr, Method::ridge})
+    if (method == name(one)) plan.method = one;
+  if (arguments.has("--each-batch")) return fit_each(campaign, arguments, plan, console);
+  if (arguments.has("--output-folder"))
+    throw UsageError("--output-folder goes with --each-batch; one model goes to -o");
+
+  plan.points = chosen_points(campaign, arguments, plan);
+  const TrainedModel model = train(campaign, plan);
+  if (arguments.has("--json")) {
+    console.line(model_to_json(model).dump(1));
+  } else {
+    print_model(model, console);
+    print_jackknife(campaign, model, plan, console);
+  }
+  if (const auto path = arguments.value("--output")) {
+    save_model(model, *path);
+    console.note("model written to " + *path);
+  }
+  return Exit::done;
+}
+
+}  // namespace
+
+Command fit_command() {
+  std::vector<Option> options = campaign_options();
+  options.push_back(absolute_option());
+  append(options, {{"--method", "M", "pls (default), mlr, pcr or ridge", 0, false}});
+  append(options, fit_option_table());
+  append(options, {{"--points", "K", "how many temperature points, or 'all' (default 2)", 0, false},
+                   {"--rule", "RULE", "how they are chosen: 'correlation' (default) or 'fcgr'", 0, false},
+                   {"--row-wise", "", "QR and NIPALS over the rows instead of moments", 0, false},
+                   {"--each-batch", "", "one model a batch instead of one of all", 0, false},
+                   {"--output-folder", "DIR", "where --each-batch saves <batch>.json", 0, false},
+                   {"--json", "", "the model document instead of words", 0, false},
+                   {"--output", "FILE", "save the model, whole or not at all", 'o', false}});
+  return {
+      "fit",
+      "a model of the thermal error: PLS, MLR, PCR or ridge",
+      "BATCH.csv|FOLDER …",
+      details,
+      options,
+      {{"thermfit fit data/vcenter55 -o model.json", "one PLS model on the two most sensitive points"},
+       {"thermfit fit data/vcenter55 --method mlr --temperatures T1,T6,T8 --points all", "MLR on points of one's own"}},
+      run_fit};
+}
+
+}  // namespace thermfit::cli

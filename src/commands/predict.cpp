@@ -1,0 +1,132 @@
+#include "thermfit/model/predict.hpp"
+
+#include "cli/campaign_options.hpp"
+#include "cli/table.hpp"
+#include "commands/commands.hpp"
+#include "commands/fit_options.hpp"
+#include "thermfit/io/csv_writer.hpp"
+#include "thermfit/io/model_json.hpp"
+#include "thermfit/number.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const details =
+    "Predicts the thermal error of every row and says which rows lie outside the model's training domain. Columns are "
+    "matched by name; a missing one is refused. The temperature reference (rise or absolute) is the model's own.\n"
+    "\n"
+    "Prints CSV: batch, row (from 1), time_min where there is a time, <error>_predicted in um, <error>_residual "
+    "(prediction minus measurement) where the error was measured, T2, SPE, and domain: inside, beyond95, beyond99. "
+    "With --summary one line a batch instead: S where measured, and the share of foreign rows.\n"
+    "--json prints thermfit-prediction/1: per batch \"S_um\", \"beyond95\", \"beyond99\" (shares) and the rows.\n"
+    "Exit codes: 0 done; 1 with --limit, when S of a batch exceeds it; 2 could not be done.";
+
+/// One batch predicted.
+struct Predicted {
+  const Batch* batch;
+  BatchPrediction prediction;
+};
+
+std::string domain_word(const TrainedModel& model, const DomainDistance<>& distance) {
+  if (beyond(model.domain, distance, 99)) return "beyond99";
+  return beyond(model.domain, distance, 95) ? "beyond95" : "inside";
+}
+
+void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {
+  const bool timed = all.front().batch->has_time(), measured = all.front().prediction.residuals.cols() > 0;
+  std::string header = timed ? "batch,row,time_min" : "batch,row";
+  for (const std::string& error : model.errors) header += ',' + csv_field(error + "_predicted");
+  for (const std::string& error : model.errors) header += measured ? ',' + csv_field(error + "_residual") : "";
+  console.line(header + ",T2,SPE,domain");
+  for (const auto& [batch, p] : all)
+    for (Index i = 0; i < p.errors.rows(); ++i) {
+      std::string row = csv_field(batch->name) + ',' + std::to_string(i + 1);
+      if (timed) row += ',' + exact_text(batch->time_s(i) / 60);
+      for (Index e = 0; e < p.errors.cols(); ++e) row += ',' + fixed_text(p.errors(i, e), 4);
+      for (Index e = 0; e < p.residuals.cols(); ++e) row += ',' + fixed_text(p.residuals(i, e), 4);
+      const DomainDistance<>& d = p.distances[static_cast<std::size_t>(i)];
+      console.line(row + ',' + general_text(d.t2, 6) + ',' + general_text(d.spe, 6) + ',' + domain_word(model, d));
+    }
+}
+
+void print_summary(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {
+  std::vector<std::string> header{"batch", "rows"};
+  const bool measured = all.front().prediction.residuals.cols() > 0;
+  for (const std::string& error : model.errors)
+    if (measured) header.insert(header.end(), {"S " + error, "largest " + error});
+  header.insert(header.end(), {"beyond 95 %", "beyond 99 %"});
+  Table table(header);
+  for (const auto& [batch, p] : all) {
+    std::vector<std::string> row{batch->name, std::to_string(batch->rows())};
+    for (Index e = 0; e < p.residuals.cols(); ++e) {
+      row.push_back(fixed_text(p.S_um(e), 2));
+      row.push_back(fixed_text(p.residuals.col(e).cwiseAbs().maxCoeff(), 2));
+    }
+    row.push_back(fixed_text(100 * p.share_beyond(model.domain, 95), 1) + " %");
+    row.push_back(fixed_text(100 * p.share_beyond(model.domain, 99), 1) + " %");
+    table.add(row);
+  }
+  console.print(table.text());
+}
+
+Json to_document(const TrainedModel& model, const std::vector<Predicted>& all) {
+  Json document{{"format", "thermfit-prediction/1"}, {"errors", model.errors}, {"batches", Json::array()}};
+  for (const auto& [batch, p] : all) {
+    Json one{{"batch", batch->name}, {"rows", batch->rows()}, {"predicted_um", to_json(p.errors)}};
+    if (p.residuals.cols() > 0) one["S_um"] = to_json(p.S_um);
+    one["beyond95"] = p.share_beyond(model.domain, 95);
+    one["beyond99"] = p.share_beyond(model.domain, 99);
+    document["batches"].push_back(std::move(one));
+  }
+  return document;
+}
+
+Exit run_predict(const Arguments& arguments, Console& console) {
+  const auto& words = arguments.positionals();
+  if (words.size() < 2) throw UsageError("predict takes a model file and at least one batch");
+  const TrainedModel model = load_model(words[0]);
+  CsvOptions options = csv_options(arguments);
+  if (options.temperatures.empty()) options.temperatures = model.temperatures;
+  if (options.errors.empty()) options.errors = model.errors;
+  options.errors_may_lack = true;
+  const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
+  std::vector<Predicted> all;
+  for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
+  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (arguments.has("--json"))
+    console.line(to_document(model, all).dump(1));
+  else if (arguments.has("--summary"))
+    print_summary(model, all, console);
+  else
+    print_rows(model, all, console);
+  const auto limit = arguments.number("--limit", 0, 1e9);
+  Exit exit = Exit::done;
+  for (const auto& [batch, p] : all)
+    for (Index e = 0; limit && e < p.S_um.size(); ++e)
+      if (!(p.S_um(e) <= *limit)) {
+        console.note("S of " + model.errors[static_cast<std::size_t>(e)] + " on " + batch->name + " is " +
+                     fixed_text(p.S_um(e), 2) + " um, above the limit of " + exact_text(*limit) + " um");
+        exit = Exit::negative;
+      }
+  return exit;
+}
+
+}  // namespace
+
+Command predict_command() {
+  std::vector<Option> options = campaign_options();
+  append(options, {{"--summary", "", "one line a batch instead of every row", 0, false},
+                   {"--limit", "UM", "exit 1 when S of a batch is above", 0, false},
+                   {"--json", "", "thermfit-prediction/1 instead of CSV", 0, false},
+                   output_option("the result")});
+  return {"predict",
+          "thermal errors from temperatures, and which rows are foreign to the model",
+          "MODEL.json BATCH.csv|FOLDER …",
+          details,
+          options,
+          {{"thermfit predict model.json data/vcenter55/K08.csv", "every row of a summer batch"},
+           {"thermfit predict model.json data/vcenter55 --summary", "one line a batch"}},
+          run_predict};
+}
+
+}  // namespace thermfit::cli

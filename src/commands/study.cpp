@@ -1,0 +1,110 @@
+#include <filesystem>
+
+#include "cli/campaign_options.hpp"
+#include "commands/commands.hpp"
+#include "commands/fit_options.hpp"
+#include "report/study_report.hpp"
+#include "thermfit/io/campaign_json.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const details =
+    "The paper's whole comparison. In every batch the temperature points most correlated with the error are chosen and "
+    "a model is fitted; every model predicts every other batch; S is the residual standard deviation of one model on "
+    "one batch, S_mean and S_std its mean and spread over batches. Prints the correlations and chosen points, the "
+    "coefficients of every batch's model, the matrix of S, S_mean and S_std in both readings (per model: of each model "
+    "over the other batches, then over models; pooled: over all pairs), the sweep over the number of points, PLS, MLR, "
+    "PCR and ridge side by side with the FCGR baseline, and every batch left out once and predicted by one model of "
+    "all "
+    "the others.\n"
+    "\n"
+    "Where the batches' folder holds a campaign.json, its title, origin (measured or simulated) and published figures "
+    "are shown beside.\n"
+    "--json prints thermfit-study/1: \"batches\" (name, rows, correlations points x errors), \"methods\" (method, "
+    "selection, \"chosen\" with batch_models, S_um models x batches, per_model, pooled, worst; \"sweep\" one entry a "
+    "number of points), \"left_out\" (method, components, mean_rmse_um, pooled_rmse_um, rmse_um by batch), "
+    "\"published\".\n"
+    "Exit codes: 0 done; 1 S_mean or S_std exceeds the limit given; 2 could not be done.";
+
+/// campaign.json beside the batches, when all of them lie in one folder.
+void find_card(const Campaign& campaign, StudyReport& report) {
+  const std::filesystem::path folder = std::filesystem::path(campaign.front().source).parent_path();
+  for (const Batch& batch : campaign)
+    if (batch.source.empty() || std::filesystem::path(batch.source).parent_path() != folder) return;
+  const std::filesystem::path path = folder / "campaign.json";
+  if (!std::filesystem::exists(path)) return;
+  report.card_path = path.string();
+  report.card = read_campaign_card(report.card_path);
+}
+
+/// Whether the first method stays below the limits the user set.
+Exit judge(const StudyReport& report, const Arguments& arguments, Console& console) {
+  const auto mean = arguments.number("--limit-s-mean", 0, 1e9), std = arguments.number("--limit-s-std", 0, 1e9);
+  const SweepStep* step = report.study.methods.front().chosen();
+  if (!step) return Exit::negative;
+  Exit exit = Exit::done;
+  for (std::size_t e = 0; e < report.errors.size(); ++e) {
+    const MeanAndStd& figure = step->robustness[e].per_model;
+    const auto above = [&](const char* what, double value, const std::optional<double>& limit) {
+      if (!limit || value <= *limit) return;
+      console.note(std::string(what) + " of " + report.errors[e] + " is " + fixed_text(value, 2) +
+                   " um, above the limit of " + exact_text(*limit) + " um");
+      exit = Exit::negative;
+    };
+    above("S_mean", figure.S_mean, mean);
+    above("S_std", figure.S_std, std);
+  }
+  return exit;
+}
+
+Exit run_study(const Arguments& arguments, Console& console) {
+  const Campaign campaign = read_campaign(arguments, console, arguments.positionals());
+  StudyOptions options;
+  options.points = require_points(arguments, campaign, 2);
+  options.most_points = arguments.integer("--most-points", 1, 10000).value_or(0);
+  options.fit = fit_options(arguments);
+  options.own_batch = arguments.has("--own-batch");
+
+  StudyReport report;
+  report.reference = temperature_reference(arguments);
+  report.temperatures = campaign.front().temperatures.names;
+  report.errors = campaign.front().errors.names;
+  for (const Batch& batch : campaign) {
+    report.batches.push_back(batch.name);
+    report.rows.push_back(batch.rows());
+  }
+  find_card(campaign, report);
+  report.study = study(observe(campaign, report.reference), options);
+  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (arguments.has("--json"))
+    console.line(study_to_json(report).dump(1));
+  else
+    print_study(report, console);
+  return judge(report, arguments, console);
+}
+
+}  // namespace
+
+Command study_command() {
+  std::vector<Option> options = campaign_options();
+  options.push_back(absolute_option());
+  append(options, fit_option_table());
+  append(options, {{"--points", "K", "temperature points of every batch's model, or 'all' (default 2)", 0, false},
+                   {"--most-points", "K", "the sweep stops there (default: all points)", 0, false},
+                   {"--own-batch", "", "a model's own batch counts in S_mean and S_std", 0, false},
+                   {"--limit-s-mean", "UM", "exit 1 when S_mean of PLS is above", 0, false},
+                   {"--limit-s-std", "UM", "exit 1 when S_std of PLS is above", 0, false},
+                   {"--json", "", "thermfit-study/1 instead of tables", 0, false},
+                   output_option("the result")});
+  return {"study",
+          "the whole comparison: selection, models, S across batches, methods side by side",
+          "BATCH.csv|FOLDER …",
+          details,
+          options,
+          {{"thermfit study data/vcenter55", "every table on the example campaign"},
+           {"thermfit study data/vcenter55 --points 3 --json -o study.json", "the same with three points, as JSON"}},
+          run_study};
+}
+
+}  // namespace thermfit::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+/// A study in tables, or as JSON.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/console.hpp"
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/batch/campaign_card.hpp"
+#include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/io/json_node.hpp"
+#include "thermfit/robustness/study.hpp"
+
+namespace thermfit::cli {
+
+/// A study together with what its tables name.
+struct StudyReport {
+  Study study;
+  TemperatureReference reference = TemperatureReference::rise;
+  std::vector<std::string> temperatures, errors, batches;
+  std::vector<Index> rows;           ///< per batch
+  std::optional<CampaignCard> card;  ///< what the data's folder says of itself
+  std::string card_path;
+};
+
+void print_study(const StudyReport& report, Console& console);
+
+/// The document `thermfit-study/1`; `study --help` explains it.
+Json study_to_json(const StudyReport& report);
+
+/// "PLS on correlation", "MLR on FCGR".
+std::string method_title(const StudiedMethod& method);
+
+}  // namespace thermfit::cli
