@@ -9,6 +9,7 @@
 #include "thermfit/fit/train.hpp"
 #include "thermfit/io/model_json.hpp"
 #include "thermfit/number.hpp"
+#include "thermfit/select/correlation.hpp"
 #include "thermfit/select/fcgr.hpp"
 
 namespace thermfit::cli {
