@@ -17,8 +17,14 @@ namespace thermfit::detail {
 class Integrator {
  public:
   Integrator(const ThermalSystem& system, Regimes& regimes, const Drive& drive)
-      : system_(system), regimes_(regimes), drive_(drive), tangents_wanted_(system.columns > 0) {
-    nodes_ = regimes.capacities().size();
+      : system_(system),
+        regimes_(regimes),
+        drive_(drive),
+        tangents_wanted_(!system.state_columns.empty()),
+        nodes_(regimes.capacities().size()),
+        state_column_(static_cast<std::size_t>(system.columns), -1) {
+    for (std::size_t j = 0; j < system.state_columns.size(); ++j)
+      state_column_[static_cast<std::size_t>(system.state_columns[j])] = static_cast<Column>(j);
     start();
   }
 
@@ -41,6 +47,7 @@ class Integrator {
   }
 
   const Vector& temperatures() const { return temperatures_; }
+  /// Nodes x state columns.
   const Matrix& modal_tangents() const { return tangents_; }
 
   /// dtheta/dt just after the present time.
@@ -65,21 +72,22 @@ class Integrator {
     const Excitation& excitation = drive_.excitation();
     temperatures_ = Vector::Zero(nodes_);
     temperatures_.head(system_.own_nodes) = excitation.start_degC;
-    tangents_ = Matrix::Zero(nodes_, system_.columns);
+    tangents_ = Matrix::Zero(nodes_, state_columns());
     for (Index node = 0; node < system_.own_nodes; ++node) {
       const auto& sensors = excitation.start_sensors[static_cast<std::size_t>(node)];
       for (const Index s : sensors) {
         const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
         const double share = 1 / static_cast<double>(sensors.size());
         temperatures_(node) -= share * sensor.offset_K;
-        if (sensor.column >= 0) tangents_(node, sensor.column) -= share;
+        if (sensor.column >= 0) tangents_(node, state_column(sensor.column)) -= share;
       }
     }
     const Moment now = drive_.moment(0, drive_.time_s(0), nullptr);
     for (const auto& [node, law] : system_.starts) {
       temperatures_(node) += system_.value(law, now);
       const Index row = node;
-      system_.derivatives(law, now, [&](Column column, double slope) { tangents_(row, column) += slope; });
+      system_.derivatives(law, now,
+                          [&](Column column, double slope) { tangents_(row, state_column(column)) += slope; });
     }
     for (Index i = system_.own_nodes; i < nodes_; ++i) {
       const ThermalSystem::Capacity& hidden = system_.capacities[static_cast<std::size_t>(i)];
@@ -143,7 +151,7 @@ class Integrator {
   Vector flows(Index sample, double time_s, Vector degC, const Matrix& modal_tangents, Matrix* slopes) const {
     const Matrix& modes = regime_->propagator.modes();
     Vector force = Vector::Zero(nodes_);
-    if (slopes) slopes->setZero(nodes_, system_.columns);
+    if (slopes) slopes->setZero(nodes_, state_columns());
     for (const ThermalSystem::StateFlow& flow : system_.state_flows) {
       Vector pattern = Vector::Zero(nodes_);
       for (const auto& [node, share] : flow.into) pattern += share * modes.col(node);
@@ -155,7 +163,7 @@ class Integrator {
 
   Eigen::RowVectorXd flow_tangent(const ThermalSystem::StateFlow& flow, Index sample, double time_s, Vector& degC,
                                   const Matrix& modal_tangents) const {
-    Eigen::RowVectorXd tangent = Eigen::RowVectorXd::Zero(system_.columns);
+    Eigen::RowVectorXd tangent = Eigen::RowVectorXd::Zero(state_columns());
     for (const Index node : flow.depends_on) {
       const double kept = degC(node);
       degC(node) = kept + difference_step;
@@ -171,18 +179,19 @@ class Integrator {
       const ThermalSystem::Conductance& one = system_.conductances[static_cast<std::size_t>(flow.element)];
       const double difference = (one.b >= 0 ? degC(one.b) : now.ambient_degC) - degC(one.a);
       factor = one.W_per_K * difference;
-      if (one.column >= 0) tangent(one.column) += difference * system_.value(flow.law, now);
+      if (one.column >= 0) tangent(state_column(one.column)) += difference * system_.value(flow.law, now);
       if (one.b == ThermalSystem::ambient && drive_.ambient_moves())
-        tangent += one.W_per_K * system_.value(flow.law, now) * drive_.ambient_tangent(sample, time_s);
+        tangent += one.W_per_K * system_.value(flow.law, now) * ambient_tangent(sample, time_s);
     }
     if (drive_.ambient_moves()) {
       Moment above = now, below = now;
       above.ambient_degC += difference_step;
       below.ambient_degC -= difference_step;
       tangent += factor * (system_.value(flow.law, above) - system_.value(flow.law, below)) / (2 * difference_step) *
-                 drive_.ambient_tangent(sample, time_s);
+                 ambient_tangent(sample, time_s);
     }
-    system_.derivatives(flow.law, now, [&](Column column, double slope) { tangent(column) += factor * slope; });
+    system_.derivatives(flow.law, now,
+                        [&](Column column, double slope) { tangent(state_column(column)) += factor * slope; });
     return tangent;
   }
 
@@ -226,10 +235,10 @@ class Integrator {
     tangents_ = weights.decay.asDiagonal() * tangents_;
     for (const HeatSlope& one : heat_slopes_)
       for (const auto& [node, share] : *one.into)
-        tangents_.col(one.column) += one.slope * share * weights.held.cwiseProduct(modes.col(node));
+        tangents_.col(state_column(one.column)) += one.slope * share * weights.held.cwiseProduct(modes.col(node));
     if (drive_.ambient_moves()) {
-      const Eigen::RowVectorXd first = drive_.ambient_tangent(sample, begin_s);
-      const Eigen::RowVectorXd rise = drive_.ambient_tangent(sample, end_s) - first;
+      const Eigen::RowVectorXd first = ambient_tangent(sample, begin_s);
+      const Eigen::RowVectorXd rise = ambient_tangent(sample, end_s) - first;
       tangents_ += weights.held.cwiseProduct(regime.ambient_drive) * first;
       tangents_ += weights.ramp.cwiseProduct(regime.ambient_drive) * rise;
     }
@@ -249,11 +258,11 @@ class Integrator {
     const Vector air = first * weights.held + rise * weights.ramp;
     for (const Regime::Slope& one : regime.slopes) {
       if (one.link >= 0) {
-        tangents_.col(one.column) -= one.slope * through_links_.col(one.link);
+        tangents_.col(state_column(one.column)) -= one.slope * through_links_.col(one.link);
         continue;
       }
-      tangents_.col(one.column) -= one.slope * to_ambient_.col(one.a);
-      if (one.to_ambient) tangents_.col(one.column) += one.slope * modes.col(one.a).cwiseProduct(air);
+      tangents_.col(state_column(one.column)) -= one.slope * to_ambient_.col(one.a);
+      if (one.to_ambient) tangents_.col(state_column(one.column)) += one.slope * modes.col(one.a).cwiseProduct(air);
     }
     step_capacity_tangents(weights, end_s - begin_s, force, ramp);
     if (slopes) tangents_ += weights.held.asDiagonal() * *slopes;
@@ -272,11 +281,21 @@ class Integrator {
           mix_ += weights.from_held * (ramp / h).asDiagonal();
           mixed = true;
         }
-        tangents_.col(column).noalias() -= slope * modes.col(i).cwiseProduct(mix_ * modes.col(i));
+        tangents_.col(state_column(column)).noalias() -= slope * modes.col(i).cwiseProduct(mix_ * modes.col(i));
       };
       if (one.column >= 0) add(one.column, 1);
       if (one.from_law) system_.derivatives(one.law, Moment{}, add);
     }
+  }
+
+  Index state_columns() const { return static_cast<Index>(system_.state_columns.size()); }
+  Column state_column(Column column) const { return state_column_[static_cast<std::size_t>(column)]; }
+  /// Of the state columns only.
+  Eigen::RowVectorXd ambient_tangent(Index sample, double time_s) const {
+    const Eigen::RowVectorXd all = drive_.ambient_tangent(sample, time_s);
+    Eigen::RowVectorXd result(state_columns());
+    for (Index j = 0; j < result.size(); ++j) result(j) = all(system_.state_columns[static_cast<std::size_t>(j)]);
+    return result;
   }
 
   struct HeatSlope {
@@ -290,10 +309,11 @@ class Integrator {
   Regimes& regimes_;
   const Drive& drive_;
   const bool tangents_wanted_;
-  Index nodes_ = 0;
+  const Index nodes_;
+  std::vector<Column> state_column_;  ///< place of each parameter in the tangents, or -1
   Regime* regime_ = nullptr;
   Vector temperatures_, state_, held_force_;
-  Matrix tangents_;  ///< modal, nodes x parameters; of temperatures before the first regime
+  Matrix tangents_;  ///< modal, nodes x state columns; of temperatures before the first regime
   std::vector<HeatSlope> heat_slopes_;
   double rate_bound_ = 0;
   Matrix mix_, through_links_, to_ambient_;

@@ -27,7 +27,8 @@ class Readings {
 
   void take_temperatures(Index sample, const Regime& regime, const Integrator& now) {
     const double time_s = drive_.time_s(sample);
-    if (system_.columns > 0) block_.noalias() = regime.outputs.leftCols(sensors_).transpose() * now.modal_tangents();
+    if (!system_.state_columns.empty())
+      block_.noalias() = regime.outputs.leftCols(sensors_).transpose() * now.modal_tangents();
     for (Index s = 0; s < sensors_; ++s) {
       const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
       const bool air = sensor.node < 0;
@@ -39,7 +40,7 @@ class Readings {
       if (system_.columns == 0) continue;
       auto row = tangents_.row(s * samples_ + sample);
       if (!air)
-        row = block_.row(s);
+        scatter(block_, s, row);
       else if (drive_.ambient_moves())
         row = drive_.ambient_tangent(sample, time_s);
       if (sensor.column >= 0) row(sensor.column) += 1;
@@ -52,7 +53,8 @@ class Readings {
   void take_displacements(Index sample, const GridPoint& point, const Regime& regime, Integrator& now) {
     const Vector& degC = now.temperatures();
     const Index outputs = static_cast<Index>(system_.displacements.size());
-    if (system_.columns > 0) block_.noalias() = regime.outputs.rightCols(outputs).transpose() * now.modal_tangents();
+    if (!system_.state_columns.empty())
+      block_.noalias() = regime.outputs.rightCols(outputs).transpose() * now.modal_tangents();
     for (Index d = 0; d < outputs; ++d) {
       const ThermalSystem::Displacement& output = system_.displacements[static_cast<std::size_t>(d)];
       double z = 0;
@@ -62,7 +64,7 @@ class Readings {
       values_(sample, sensors_ + d) = z;
       if (system_.columns == 0) continue;
       auto row = tangents_.row((sensors_ + d) * samples_ + sample);
-      row = block_.row(d);
+      scatter(block_, d, row);
       for (std::size_t k = 0; k < output.um_per_K.size(); ++k)
         if (output.columns[k] >= 0) row(output.columns[k]) += degC(output.um_per_K[k].first) - system_.reference_degC;
       for (const auto& term : output.terms) add_term_tangent(term, point, regime, now, row);
@@ -99,6 +101,13 @@ class Readings {
   RowMatrix& tangents() { return tangents_; }
 
  private:
+  /// Adds a row of tangents of the state to a row of all parameters.
+  template <class Block, class Row>
+  void scatter(const Block& block, Index from, Row& row) const {
+    for (std::size_t j = 0; j < system_.state_columns.size(); ++j)
+      row(system_.state_columns[j]) += block(from, static_cast<Index>(j));
+  }
+
   template <class Row>
   void add_term_tangent(const ThermalSystem::Displacement::Term& term, const GridPoint& point, const Regime& regime,
                         const Integrator& now, Row& row) {
@@ -111,7 +120,10 @@ class Readings {
       degC(node) = kept - step;
       const double slope = (above - system_.value(term.law, moment)) / (2 * step);
       degC(node) = kept;
-      if (slope != 0) row += slope * (regime.propagator.modes().col(node).transpose() * now.modal_tangents());
+      if (slope != 0) {
+        const Eigen::RowVectorXd moved = regime.propagator.modes().col(node).transpose() * now.modal_tangents();
+        scatter(slope * moved, 0, row);
+      }
     }
     if (drive_.ambient_moves()) {
       Moment above = moment, below = moment;

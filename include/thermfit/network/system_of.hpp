@@ -47,6 +47,12 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
   system.own_nodes = network.node_count();
   system.reference_degC = network.reference_degC;
   system.columns = static_cast<Index>(parameters.size());
+  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const Kind kind = parameters[j].kind;
+    if (kind != Kind::expansion && kind != Kind::placement && (kind != Kind::sensor_offset || offsets_move_start))
+      system.state_columns.push_back(static_cast<Column>(j));
+  }
   for (std::size_t i = 0; i < network.nodes.size(); ++i) {
     ThermalSystem::Capacity capacity;
     capacity.J_per_K = network.nodes[i].capacity_J_per_K;

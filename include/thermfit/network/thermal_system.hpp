@@ -204,6 +204,7 @@ class ThermalSystem {
   std::vector<Displacement> displacements;
   std::vector<BoundLaw::Owner> owners;  ///< one for each effect
   Index columns = 0;                    ///< parameters whose sensitivities are wanted
+  std::vector<Column> state_columns;    ///< those of them that can move a temperature
 
   double value(const BoundLaw& bound, const Moment& now) const {
     return bound.law(now, owners[bound.owner].values.data());
