@@ -12,6 +12,8 @@ const std::vector<Command>& all_commands() {
       predict_command(),
       study_command(),
       inspect_command(),
+      simulate_command(),
+      calibrate_command(),
       diagnose_command(),
       run_command(),
       export_command(),

@@ -141,8 +141,8 @@ inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& netwo
     for (std::size_t k = 0; k < network.sensors[i].placement.size(); ++k) {
       const auto [node, share] = network.sensors[i].placement[k];
       linear(Kind::placement, i, k,
-             "placement of " + network.sensors[i].column + " towards " + nodes[static_cast<std::size_t>(node)].name, "",
-             share, sd.sensor_placement);
+             network.sensors[i].column + " towards " + nodes[static_cast<std::size_t>(node)].name, "", share,
+             sd.sensor_placement);
     }
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     const ThermalNetwork::AddedEffect& added = network.effects[e];

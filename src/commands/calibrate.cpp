@@ -1,0 +1,72 @@
+#include "cli/campaign_options.hpp"
+#include "cli/command.hpp"
+#include "commands/commands.hpp"
+#include "report/calibration_report.hpp"
+#include "thermfit/effects/catalogue.hpp"
+#include "thermfit/io/atomic_file.hpp"
+#include "thermfit/io/machine_json.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+const char* const details =
+    "Moves every number of the machine file - capacities, conductances, powers, expansions, sensor offsets and "
+    "placements, and the parameters of its effects - to the values most probable after the batches, each held by what "
+    "was known of it before (`uncertainty` in the file). Channels are weighted by their own residual, and correlated "
+    "residuals count as the few independent ones that they are.\n"
+    "\n"
+    "Prints each channel's rms before and after, what moved and by how many prior standard deviations, and what these "
+    "data cannot tell: numbers they do not pin, and numbers they know only together. -o writes the calibrated "
+    "machine.\n"
+    "A gap that remains afterwards is not miscalibration: see `thermfit diagnose`.\n"
+    "Exit codes: 0 done; 1 stopped before it converged; 2 could not be done.";
+
+std::vector<Option> options() {
+  std::vector<Option> all{
+      {"--output", "FILE", "write the calibrated machine there", 'o', false},
+      {"--json", "", "machine-readable result, thermfit-calibration/1", 0, false},
+      {"--all", "", "show every parameter, not only those that moved", 0, false},
+      {"--starts", "N", "fits from different points, the best is kept; 1 to 100 (default: 3)", 0, false},
+      {"--seed", "N", "of the points drawn (default: 1)", 0, false},
+      {"--fixed-placement", "", "every sensor reads exactly its node", 0, false}};
+  for (Option& option : campaign_options()) all.push_back(std::move(option));
+  return all;
+}
+
+Exit run(const Arguments& arguments, Console& console) {
+  std::vector<std::string> files = arguments.positionals();
+  if (files.size() < 2) throw UsageError("calibrate takes a machine file and batches");
+  const EffectLibrary effects = standard_effects();
+  ThermalNetwork network = read_machine(files.front(), effects);
+  files.erase(files.begin());
+  if (!arguments.has("--fixed-placement")) network = with_placements(std::move(network));
+  const Observations seen = observations_of(network, read_campaign(arguments, console, files));
+  CalibrationOptions how;
+  how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));
+  how.seed = static_cast<std::uint64_t>(arguments.integer("--seed", 0, 1L << 53).value_or(1));
+  console.progress("calibrating …");
+  const Calibration calibration = calibrate(seen, network, effects, how);
+  console.progress("");
+  if (const auto path = arguments.value("--output"))
+    write_atomically(*path, machine_to_json(calibration.fit.network()).dump(1) + '\n');
+  if (arguments.has("--json"))
+    console.print(calibration_json(calibration, seen));
+  else
+    print_calibration(calibration, seen, arguments.has("--all"), console);
+  return calibration.fit.converged ? Exit::done : Exit::negative;
+}
+
+}  // namespace
+
+Command calibrate_command() {
+  return {"calibrate",
+          "fit the numbers of a machine file to batches, each under what is known of it",
+          "machine.json BATCH.csv …",
+          details,
+          options(),
+          {{"thermfit calibrate machine.json real -o calibrated.json", "all parameters, all batches"},
+           {"thermfit calibrate machine.json K0[1-6].csv --all", "some batches, every parameter shown"}},
+          run};
+}
+
+}  // namespace thermfit::cli

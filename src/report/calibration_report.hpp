@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/console.hpp"
+#include "thermfit/gap/calibration.hpp"
+
+namespace thermfit::cli {
+
+/// What a calibration says of one parameter: "not known from these data", "only together with …", "at its bound".
+std::string identified_in_words(const Calibration& calibration, std::size_t parameter);
+
+/// The result in words: channels before and after, what moved, what the data do not know. `all`: every parameter.
+void print_calibration(const Calibration& calibration, const Observations& seen, bool all, Console& console);
+
+/// The result as `thermfit-calibration/1`.
+std::string calibration_json(const Calibration& calibration, const Observations& seen);
+
+}  // namespace thermfit::cli
