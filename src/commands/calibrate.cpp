@@ -40,7 +40,7 @@ Exit run(const Arguments& arguments, Console& console) {
   ThermalNetwork network = read_machine(files.front(), effects);
   files.erase(files.begin());
   if (!arguments.has("--fixed-placement")) network = with_placements(std::move(network));
-  const Observations seen = observations_of(network, read_campaign(arguments, console, files));
+  const MachineRecord seen = observations_of(network, read_campaign(arguments, console, files));
   CalibrationOptions how;
   how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));
   how.seed = static_cast<std::uint64_t>(arguments.integer("--seed", 0, 1L << 53).value_or(1));

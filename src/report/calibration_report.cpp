@@ -26,7 +26,7 @@ double standard_error(const Calibration& calibration, std::size_t j) {
   return calibration.identified[j].sd * parameter(calibration, j).slope(coordinate(calibration, j));
 }
 
-void print_channels(const Calibration& calibration, const Observations& seen, Console& console) {
+void print_channels(const Calibration& calibration, const MachineRecord& seen, Console& console) {
   Table table({"channel", "unit", "rms before", "rms after", "noise"});
   for (std::size_t c = 0; c < seen.channels.size(); ++c) {
     const ObservedChannel& channel = seen.channels[c];
@@ -98,7 +98,7 @@ std::string identified_in_words(const Calibration& calibration, std::size_t j) {
   return words;
 }
 
-void print_calibration(const Calibration& calibration, const Observations& seen, bool all, Console& console) {
+void print_calibration(const Calibration& calibration, const MachineRecord& seen, bool all, Console& console) {
   console.line(std::to_string(seen.batches()) + (seen.batches() == 1 ? " batch, " : " batches, ") +
                std::to_string(seen.channels.size()) + " channels, " +
                std::to_string(calibration.fit.parameters.size()) + " parameters");
@@ -116,7 +116,7 @@ void print_calibration(const Calibration& calibration, const Observations& seen,
   if (!calibration.fit.converged) console.line("Not converged: the values above are where it stopped, not an optimum.");
 }
 
-std::string calibration_json(const Calibration& calibration, const Observations& seen) {
+std::string calibration_json(const Calibration& calibration, const MachineRecord& seen) {
   Json document{{"format", "thermfit-calibration/1"},
                 {"machine", calibration.fit.prior.name},
                 {"batches", seen.names},

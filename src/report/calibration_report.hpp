@@ -12,9 +12,9 @@ namespace thermfit::cli {
 std::string identified_in_words(const Calibration& calibration, std::size_t parameter);
 
 /// The result in words: channels before and after, what moved, what the data do not know. `all`: every parameter.
-void print_calibration(const Calibration& calibration, const Observations& seen, bool all, Console& console);
+void print_calibration(const Calibration& calibration, const MachineRecord& seen, bool all, Console& console);
 
 /// The result as `thermfit-calibration/1`.
-std::string calibration_json(const Calibration& calibration, const Observations& seen);
+std::string calibration_json(const Calibration& calibration, const MachineRecord& seen);
 
 }  // namespace thermfit::cli

@@ -69,7 +69,7 @@ inline double spread_number(std::uint64_t& state) {
 
 /// Fits all parameters of `machine` to a campaign, from several starts. Throws Error as observations_of() and
 /// simulate() do; that the data do not know a parameter is part of the result.
-inline Calibration calibrate(const Observations& seen, const ThermalNetwork& machine, const EffectLibrary& library,
+inline Calibration calibrate(const MachineRecord& seen, const ThermalNetwork& machine, const EffectLibrary& library,
                              const CalibrationOptions& options = {}) {
   Calibration best;
   const ThermalNetwork complete = with_complete_effects(machine, library);

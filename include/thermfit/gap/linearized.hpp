@@ -15,7 +15,7 @@ namespace thermfit {
 /// Measured minus simulated, by channel and batch; NaN where nothing was measured.
 using Residuals = std::vector<SeriesByBatch>;
 
-inline Residuals residuals_of(const Observations& seen, const std::vector<Simulation>& simulated) {
+inline Residuals residuals_of(const MachineRecord& seen, const std::vector<Simulation>& simulated) {
   Residuals result(seen.channels.size());
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
     for (std::size_t b = 0; b < simulated.size(); ++b)
@@ -39,7 +39,7 @@ struct Linearized {
 };
 
 /// One whitener for every channel and batch.
-inline std::vector<std::vector<Whitener>> whiteners_of(const Observations& seen,
+inline std::vector<std::vector<Whitener>> whiteners_of(const MachineRecord& seen,
                                                        const std::vector<ResidualNoise>& noise) {
   std::vector<std::vector<Whitener>> result(seen.channels.size());
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
@@ -49,7 +49,7 @@ inline std::vector<std::vector<Whitener>> whiteners_of(const Observations& seen,
 }
 
 /// Whitens simulations that carry sensitivities. `slopes` is d(value)/dt of each parameter.
-inline Linearized linearized(const Observations& seen, const std::vector<Simulation>& simulated, const Vector& slopes,
+inline Linearized linearized(const MachineRecord& seen, const std::vector<Simulation>& simulated, const Vector& slopes,
                              const std::vector<std::vector<Whitener>>& whiteners) {
   Linearized result;
   result.parameters = slopes.size();

@@ -132,7 +132,7 @@ inline double whitened_squares(const Residuals& residual, const std::vector<std:
   return sum;
 }
 
-inline bool all_finite(const Observations& seen, const std::vector<Simulation>& simulated) {
+inline bool all_finite(const MachineRecord& seen, const std::vector<Simulation>& simulated) {
   for (const ObservedChannel& channel : seen.channels)
     for (const Simulation& one : simulated)
       if (!one.channels.col(channel.column).allFinite()) return false;
@@ -142,7 +142,7 @@ inline bool all_finite(const Observations& seen, const std::vector<Simulation>& 
 }  // namespace detail
 
 /// Noise of every channel from its residual, within the channel's bounds.
-inline std::vector<ResidualNoise> noise_of(const Observations& seen, const Residuals& residual,
+inline std::vector<ResidualNoise> noise_of(const MachineRecord& seen, const Residuals& residual,
                                            const std::vector<ResidualNoise>& start = {}) {
   std::vector<ResidualNoise> result;
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
@@ -151,7 +151,7 @@ inline std::vector<ResidualNoise> noise_of(const Observations& seen, const Resid
   return result;
 }
 
-inline double log_likelihood(const Observations& seen, const Residuals& residual,
+inline double log_likelihood(const MachineRecord& seen, const Residuals& residual,
                              const std::vector<ResidualNoise>& noise) {
   double sum = 0;
   for (std::size_t c = 0; c < residual.size(); ++c) sum += log_likelihood(noise[c], residual[c], seen.time_s);
@@ -163,7 +163,7 @@ inline double log_likelihood(const Observations& seen, const Residuals& residual
 /// Levenberg-Marquardt on the whitened residual, the noise of each channel estimated anew after every step, so that the
 /// weights are those of a concentrated likelihood. Damping is in units of the prior. `machine` holds the means of the
 /// priors.
-inline MapFit map_fit(const Observations& seen, const ThermalNetwork& machine, const EffectLibrary& library,
+inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, const EffectLibrary& library,
                       const FitOptions& options = {}) {
   MapFit fit;
   fit.prior = with_complete_effects(machine, library);

@@ -24,7 +24,7 @@ struct ObservedChannel {
 };
 
 /// What a campaign says about a machine: what drove each batch and what its channels read.
-struct Observations {
+struct MachineRecord {
   std::vector<std::string> names;  ///< of the batches
   std::vector<Excitation> excitations;
   std::vector<Vector> time_s;
@@ -39,8 +39,8 @@ constexpr double lumping_tolerance = 0.004;
 
 /// The channels of `network` that `campaign` measured. The column that gives the ambient temperature is an input, not
 /// an output. Throws Error when there is none, or when a batch cannot drive the network.
-inline Observations observations_of(const ThermalNetwork& network, const Campaign& campaign) {
-  Observations result;
+inline MachineRecord observations_of(const ThermalNetwork& network, const Campaign& campaign) {
+  MachineRecord result;
   result.excitations = excitations_of(network, campaign);
   double shortest = 1e300, longest = 0;
   for (const Batch& batch : campaign) {

@@ -23,7 +23,7 @@ struct Screened {
 /// What the screening of every candidate shares: the calibrated machine, linearised.
 class ScreeningBase {
  public:
-  ScreeningBase(const Observations& seen, const MapFit& fit)
+  ScreeningBase(const MachineRecord& seen, const MapFit& fit)
       : seen_(seen),
         fit_(fit),
         whiteners_(whiteners_of(seen, fit.noise)),
@@ -31,7 +31,7 @@ class ScreeningBase {
         prior_(Matrix::Identity(fit.t.size(), fit.t.size())),
         factor_(fit.total().information + prior_) {}
 
-  const Observations& seen() const { return seen_; }
+  const MachineRecord& seen() const { return seen_; }
   const MapFit& fit() const { return fit_; }
   const std::vector<std::vector<Whitener>>& whiteners() const { return whiteners_; }
   const Linearized& model() const { return model_; }
@@ -53,7 +53,7 @@ class ScreeningBase {
   }
 
  private:
-  const Observations& seen_;
+  const MachineRecord& seen_;
   const MapFit& fit_;
   std::vector<std::vector<Whitener>> whiteners_;
   Linearized model_;
@@ -139,7 +139,7 @@ inline SizeRange size_range(const std::vector<EffectParameter>& parameters, cons
 inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& library,
                            const ThermalNetwork::AddedEffect& begun) {
   const MapFit& fit = base.fit();
-  const Observations& seen = base.seen();
+  const MachineRecord& seen = base.seen();
   Screened result;
   result.added = begun;
   ThermalNetwork network = fit.network();
