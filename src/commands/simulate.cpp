@@ -58,7 +58,7 @@ std::string with_batch_column(const std::string& text, const std::string& batch,
   for (std::size_t begin = 0, line = 0; begin < text.size(); ++line) {
     const std::size_t end = text.find('\n', begin) + 1;
     if (line > 0 || first)
-      result += (line == 0 ? "batch" : thermfit::detail::csv_field(batch)) + ',' + text.substr(begin, end - begin);
+      result += (line == 0 ? "batch" : csv_field(batch)) + ',' + text.substr(begin, end - begin);
     begin = end;
   }
   return result;
