@@ -35,7 +35,7 @@ struct MachineRecord {
 
 /// A lumped machine stands for a spread one only to about this share of a channel's swing: a slow error of that size is
 /// expected of every model, right or wrong, and no effect gets credit for removing it.
-constexpr double lumping_tolerance = 0.004;
+constexpr double lumping_tolerance = 0.01;
 
 /// The channels of `network` that `campaign` measured. The column that gives the ambient temperature is an input, not
 /// an output. Throws Error when there is none, or when a batch cannot drive the network.
@@ -78,7 +78,7 @@ inline MachineRecord observations_of(const ThermalNetwork& network, const Campai
     channel.swing = std::sqrt(swing / count);
     channel.floor = high_frequency_sd(channel.measured);
     channel.bounds.least_white = std::max(0.7 * channel.floor, 1e-3 * channel.swing);
-    channel.bounds.least_slow = lumping_tolerance * channel.swing;
+    channel.bounds.least_slow = std::hypot(lumping_tolerance * channel.swing, channel.floor);
     channel.bounds.shortest_s = 5 * shortest;
     channel.bounds.longest_s = 2 * longest;
     result.channels.push_back(std::move(channel));

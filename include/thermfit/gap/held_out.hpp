@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "thermfit/gap/map_fit.hpp"
+
+namespace thermfit {
+
+/// Batches left out together, one set a fold.
+using Folds = std::vector<std::vector<std::size_t>>;
+
+/// Every batch left out once: alone up to `most_folds` batches, else every most_folds-th together, so that each fold
+/// keeps all conditions. Fewer than two batches leave nothing to judge by: no folds.
+inline Folds folds_of(std::size_t batches, std::size_t most_folds = 12) {
+  if (batches < 2) return {};
+  Folds result(std::min(batches, most_folds));
+  for (std::size_t b = 0; b < batches; ++b) result[b % result.size()].push_back(b);
+  return result;
+}
+
+/// What a model leaves on batches that did not take part in fitting it.
+struct HeldOut {
+  Residuals residual;
+  std::vector<ResidualNoise> noise;  ///< of this residual
+  double log_score = 0;              ///< log predictive density of all channels
+  Vector by_batch;                   ///< the same by batch
+};
+
+inline HeldOut scored(const Observations& seen, Residuals residual, const std::vector<ResidualNoise>& start) {
+  HeldOut result;
+  result.noise = noise_of(seen, residual, start);
+  result.by_batch = Vector::Zero(static_cast<Index>(seen.batches()));
+  for (std::size_t c = 0; c < residual.size(); ++c)
+    for (std::size_t b = 0; b < seen.batches(); ++b)
+      result.by_batch(static_cast<Index>(b)) +=
+          log_likelihood(result.noise[c], SeriesByBatch{residual[c][b]}, {seen.time_s[b]});
+  result.log_score = result.by_batch.sum();
+  result.residual = std::move(residual);
+  return result;
+}
+
+/// Working coordinates fitted without some batches: a Gauss-Newton step away from the fit to all of them, with the
+/// normal equations of the left-out batches subtracted, halved until the training batches agree with it.
+inline Vector coordinates_without(const Observations& seen, const MapFit& fit, const EffectLibrary& library,
+                                  const std::vector<std::size_t>& left_out,
+                                  const std::vector<std::vector<Whitener>>& whiteners) {
+  NormalEquations kept = fit.total();
+  for (const std::size_t b : left_out) kept -= fit.equations.by_batch[b];
+  const Index n = fit.t.size();
+  Vector low(n), high(n);
+  for (Index j = 0; j < n; ++j) std::tie(low(j), high(j)) = detail::coordinate_range(fit.parameter(j));
+  const Matrix information = kept.information + Matrix::Identity(n, n);
+  Vector step = detail::step_in_box(information, kept.score - fit.t, fit.t, low, high);
+
+  std::vector<Excitation> training;
+  std::vector<std::size_t> batches;
+  for (std::size_t b = 0; b < seen.batches(); ++b)
+    if (std::find(left_out.begin(), left_out.end(), b) == left_out.end()) {
+      training.push_back(seen.excitations[b]);
+      batches.push_back(b);
+    }
+  const auto cost = [&](const Vector& t) {
+    const std::vector<Simulation> simulated = simulate(fit.network_at(t), training, library);
+    double sum = t.squaredNorm();
+    for (std::size_t i = 0; i < batches.size(); ++i)
+      for (std::size_t c = 0; c < seen.channels.size(); ++c) {
+        Vector r = seen.channels[c].measured[batches[i]] - simulated[i].channels.col(seen.channels[c].column);
+        whiteners[c][batches[i]].apply(r);
+        sum += r.squaredNorm();
+      }
+    return sum;
+  };
+  double before = fit.t.squaredNorm();
+  for (const std::size_t b : batches) before += fit.equations.by_batch[b].squares;
+  for (int attempt = 0; attempt < 4; ++attempt, step *= 0.5) {
+    const double after = cost(fit.t + step);
+    if (std::isfinite(after) && after < before) return fit.t + step;
+  }
+  return fit.t;
+}
+
+/// Residuals of every batch from a fit that has not seen it.
+inline HeldOut held_out(const Observations& seen, const MapFit& fit, const EffectLibrary& library, const Folds& folds) {
+  if (folds.empty()) return scored(seen, fit.residual, fit.noise);
+  const auto whiteners = whiteners_of(seen, fit.noise);
+  Residuals residual(seen.channels.size(), SeriesByBatch(seen.batches()));
+  for (const std::vector<std::size_t>& left_out : folds) {
+    const Vector t = coordinates_without(seen, fit, library, left_out, whiteners);
+    std::vector<Excitation> unseen;
+    for (const std::size_t b : left_out) unseen.push_back(seen.excitations[b]);
+    const std::vector<Simulation> simulated = simulate(fit.network_at(t), unseen, library);
+    for (std::size_t i = 0; i < left_out.size(); ++i)
+      for (std::size_t c = 0; c < seen.channels.size(); ++c)
+        residual[c][left_out[i]] =
+            seen.channels[c].measured[left_out[i]] - simulated[i].channels.col(seen.channels[c].column);
+  }
+  return scored(seen, std::move(residual), fit.noise);
+}
+
+}  // namespace thermfit
