@@ -28,7 +28,7 @@ class HeatSourceEffect : public Effect {
   std::vector<EffectParameter> parameters(const ThermalNetwork& network,
                                           const ThermalNetwork::AddedEffect& added) const override {
     node_at(network, added.location);
-    return {linear_parameter("power_W", "W", typical_power_W(network)), fixed_parameter("scale", 1)};
+    return {positive_parameter("power_W", "W", typical_power_W(network)), fixed_parameter("scale", 1)};
   }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {

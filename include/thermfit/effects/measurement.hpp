@@ -99,7 +99,7 @@ class SensorLag : public SensorEffect {
   EffectParameter parameter() const override {
     EffectParameter lag = log_parameter("lag_s", "s", 100, 1.2);
     lag.lower = 0.1;
-    lag.starts = {20, 200};
+    lag.starts = {30, 200, 1000};
     return lag;
   }
 };

@@ -28,7 +28,7 @@ struct HeldOut {
   Vector by_batch;                   ///< the same by batch
 };
 
-inline HeldOut scored(const Observations& seen, Residuals residual, const std::vector<ResidualNoise>& start) {
+inline HeldOut scored(const MachineRecord& seen, Residuals residual, const std::vector<ResidualNoise>& start) {
   HeldOut result;
   result.noise = noise_of(seen, residual, start);
   result.by_batch = Vector::Zero(static_cast<Index>(seen.batches()));
@@ -43,7 +43,7 @@ inline HeldOut scored(const Observations& seen, Residuals residual, const std::v
 
 /// Working coordinates fitted without some batches: a Gauss-Newton step away from the fit to all of them, with the
 /// normal equations of the left-out batches subtracted, halved until the training batches agree with it.
-inline Vector coordinates_without(const Observations& seen, const MapFit& fit, const EffectLibrary& library,
+inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library,
                                   const std::vector<std::size_t>& left_out,
                                   const std::vector<std::vector<Whitener>>& whiteners) {
   NormalEquations kept = fit.total();
@@ -82,7 +82,7 @@ inline Vector coordinates_without(const Observations& seen, const MapFit& fit, c
 }
 
 /// Residuals of every batch from a fit that has not seen it.
-inline HeldOut held_out(const Observations& seen, const MapFit& fit, const EffectLibrary& library, const Folds& folds) {
+inline HeldOut held_out(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library, const Folds& folds) {
   if (folds.empty()) return scored(seen, fit.residual, fit.noise);
   const auto whiteners = whiteners_of(seen, fit.noise);
   Residuals residual(seen.channels.size(), SeriesByBatch(seen.batches()));

@@ -15,9 +15,9 @@ namespace thermfit {
 struct MapFit {
   ThermalNetwork prior;  ///< the machine before the data: the means of the priors, effects complete
   std::vector<Parameter> parameters;
-  Vector t;                          ///< working coordinates: prior standard deviations from the prior's mean
-  std::vector<ResidualNoise> noise;  ///< by channel
-  std::vector<Simulation> simulated;
+  Vector t;                           ///< working coordinates: prior standard deviations from the prior's mean
+  std::vector<ResidualNoise> noise;   ///< by channel
+  std::vector<Simulation> simulated;  ///< without sensitivities
   Residuals residual;
   SummedEquations equations;
   double log_likelihood = 0;
@@ -214,6 +214,7 @@ inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, 
     fit.log_posterior = reached;
   }
   fit.equations = summed_equations(linearized(seen, fit.simulated, fit.slopes(), whiteners_of(seen, fit.noise)));
+  for (Simulation& one : fit.simulated) one.jacobian.resize(0, 0);
   fit.log_likelihood = log_likelihood(seen, fit.residual, fit.noise);
   fit.log_posterior = fit.log_likelihood - 0.5 * fit.t.squaredNorm();
   const Eigen::LLT<Matrix> factor(fit.total().information + identity);

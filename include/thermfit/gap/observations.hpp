@@ -80,7 +80,7 @@ inline MachineRecord observations_of(const ThermalNetwork& network, const Campai
     channel.bounds.least_white = std::max(0.7 * channel.floor, 1e-3 * channel.swing);
     channel.bounds.least_slow = std::hypot(lumping_tolerance * channel.swing, channel.floor);
     channel.bounds.shortest_s = 5 * shortest;
-    channel.bounds.longest_s = 2 * longest;
+    channel.bounds.longest_s = std::max(longest / 6, 2 * channel.bounds.shortest_s);
     result.channels.push_back(std::move(channel));
   };
   for (std::size_t s = 0; s < network.sensors.size(); ++s)

@@ -23,16 +23,18 @@ struct Screened {
 /// What the screening of every candidate shares: the calibrated machine, linearised.
 class ScreeningBase {
  public:
-  ScreeningBase(const MachineRecord& seen, const MapFit& fit)
+  ScreeningBase(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library)
       : seen_(seen),
         fit_(fit),
+        simulated_(simulate(fit.network(), seen.excitations, library, fit.parameters)),
         whiteners_(whiteners_of(seen, fit.noise)),
-        model_(linearized(seen, fit.simulated, fit.slopes(), whiteners_)),
+        model_(linearized(seen, simulated_, fit.slopes(), whiteners_)),
         prior_(Matrix::Identity(fit.t.size(), fit.t.size())),
         factor_(fit.total().information + prior_) {}
 
   const MachineRecord& seen() const { return seen_; }
   const MapFit& fit() const { return fit_; }
+  const std::vector<Simulation>& simulated() const { return simulated_; }  ///< with sensitivities
   const std::vector<std::vector<Whitener>>& whiteners() const { return whiteners_; }
   const Linearized& model() const { return model_; }
 
@@ -55,6 +57,7 @@ class ScreeningBase {
  private:
   const MachineRecord& seen_;
   const MapFit& fit_;
+  std::vector<Simulation> simulated_;
   std::vector<std::vector<Whitener>> whiteners_;
   Linearized model_;
   Matrix prior_;
@@ -145,6 +148,15 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
   ThermalNetwork network = fit.network();
   const std::vector<EffectParameter> parameters = library.at(begun.effect).parameters(network, begun);
   const detail::SizeRange range = detail::size_range(parameters, begun);
+  // The placement of a sensor imitates a fault of it, and would then hide it: its signature is that at no placement.
+  const auto faulty = std::find_if(network.sensors.begin(), network.sensors.end(),
+                                   [&](const auto& sensor) { return sensor.column == begun.location; });
+  std::vector<Simulation> moved;
+  if (faulty != network.sensors.end()) {
+    for (auto& share : faulty->placement) share.second = 0;
+    moved = simulate(network, seen.excitations, library);
+  }
+  const std::vector<Simulation>& without = moved.empty() ? base.simulated() : moved;
   network.effects.push_back(begun);
   const std::vector<Simulation> with = simulate(network, seen.excitations, library);
   if (!detail::all_finite(seen, with)) return result;
@@ -159,7 +171,7 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
     across[c] = Vector::Zero(static_cast<Index>(channel.active.size()));
     for (std::size_t b = 0; b < with.size(); ++b) {
       const Index column = seen.channels[c].column;
-      signature[c].push_back(with[b].channels.col(column) - fit.simulated[b].channels.col(column));
+      signature[c].push_back(with[b].channels.col(column) - without[b].channels.col(column));
       Vector white = signature[c][b];
       if (white.cwiseAbs().maxCoeff() == 0) continue;
       base.whiteners()[c][b].apply(white);
@@ -213,7 +225,7 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
     for (std::size_t b = 0; b < with.size(); ++b) {
       const Index rows = with[b].channels.rows(), first = seen.channels[c].column * rows;
       predicted[c].push_back(fit.residual[c][b] - size * signature[c][b] -
-                             fit.simulated[b].jacobian.middleRows(first, rows) * slopes.cwiseProduct(move));
+                             base.simulated()[b].jacobian.middleRows(first, rows) * slopes.cwiseProduct(move));
     }
   result.start = fit.t + move;
   const double shift = size - range.prior_mean;

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "thermfit/gap/held_out.hpp"
+#include "thermfit/gap/screen.hpp"
+
+namespace thermfit {
+
+/// One account of a campaign: the machine calibrated together with some effects (none: calibration only).
+struct Explanation {
+  std::vector<ThermalNetwork::AddedEffect> effects;  ///< with fitted values
+  MapFit fit;
+  HeldOut held;
+};
+
+/// What stays the same while accounts of one campaign are compared.
+struct Inquiry {
+  const MachineRecord& seen;
+  const ThermalNetwork& machine;  ///< as given, with placements
+  const EffectLibrary& library;
+  Folds folds;
+  unsigned threads = 0;
+};
+
+inline bool same_place(const ThermalNetwork::AddedEffect& a, const ThermalNetwork::AddedEffect& b) {
+  return a.effect == b.effect && a.location == b.location && a.driver == b.driver;
+}
+
+/// Fits the machine with `effects` from where the screening left them. `start` holds the working coordinates of the
+/// machine and of all effects but those at the end that have none yet.
+inline Explanation explained_by(const Inquiry& inquiry, const std::vector<ThermalNetwork::AddedEffect>& effects,
+                                const Vector& start, const std::vector<ResidualNoise>& noise, FitOptions options = {}) {
+  ThermalNetwork network = inquiry.machine;
+  network.effects.insert(network.effects.end(), effects.begin(), effects.end());
+  network = with_complete_effects(std::move(network), inquiry.library);
+  const std::vector<Parameter> parameters = calibration_parameters(network, inquiry.library);
+  const Index count = static_cast<Index>(parameters.size()), given = std::min(count, start.size());
+  options.noise = noise;
+  options.start = Vector::Zero(count);
+  options.start.head(given) = start.head(given);
+  for (Index j = given; j < count; ++j) {
+    const Parameter& one = parameters[static_cast<std::size_t>(j)];
+    const double value = value_in(network, one);
+    options.start(j) = one.logarithmic && value <= 0 ? -3 : one.coordinate(value);
+  }
+  Explanation result;
+  result.fit = map_fit(inquiry.seen, network, inquiry.library, options);
+  const ThermalNetwork fitted = result.fit.network();
+  result.effects.assign(fitted.effects.end() - static_cast<std::ptrdiff_t>(effects.size()), fitted.effects.end());
+  result.held = held_out(inquiry.seen, result.fit, inquiry.library, inquiry.folds);
+  return result;
+}
+
+/// Which of the screened deserve the full refit: the strongest, and the strongest of every effect that promises
+/// anything, so that a family whose linear promise misleads is not lost.
+inline std::vector<Screened> finalists(const std::vector<Screened>& screened, std::size_t strongest, double least_gain,
+                                       double least_share) {
+  std::vector<Screened> result;
+  std::vector<std::string> families;
+  for (const Screened& one : screened) {
+    const double best = screened.front().gain;
+    const bool known = std::find(families.begin(), families.end(), one.added.effect) != families.end();
+    if (!std::isfinite(one.gain) || one.gain < least_gain) continue;
+    if (result.size() >= strongest && (known || one.gain < least_share * best)) continue;
+    if (!known) families.push_back(one.added.effect);
+    result.push_back(one);
+  }
+  return result;
+}
+
+/// Refits every one of `chosen` on top of `kept` effects.
+inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector<Screened>& chosen,
+                                       const std::vector<ThermalNetwork::AddedEffect>& kept,
+                                       const std::vector<ResidualNoise>& noise, const FitOptions& options) {
+  std::vector<Explanation> result(chosen.size());
+  in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
+    std::vector<ThermalNetwork::AddedEffect> effects = kept;
+    effects.push_back(chosen[i].added);
+    result[i] = explained_by(inquiry, effects, chosen[i].start, noise, options);
+  });
+  return result;
+}
+
+/// Mean square of each channel in units of what is expected of a right machine: noise and lumping tolerance.
+inline Vector misfit_of(const MachineRecord& seen, const Residuals& residual) {
+  Vector result = Vector::Zero(static_cast<Index>(seen.channels.size()));
+  for (std::size_t c = 0; c < residual.size(); ++c) {
+    const ObservedChannel& channel = seen.channels[c];
+    double squares = 0, count = 0;
+    for (const Vector& r : residual[c])
+      for (Index k = 0; k < r.size(); ++k)
+        if (!std::isnan(r(k))) squares += r(k) * r(k), ++count;
+    const double expected = std::hypot(channel.floor, channel.bounds.least_slow);
+    if (count > 0 && expected > 0) result(static_cast<Index>(c)) = squares / count / (expected * expected);
+  }
+  return result;
+}
+
+/// What is beyond expectation, summed over channels.
+inline double excess_of(const Vector& misfit) { return (misfit.array() - 1).max(0).sum(); }
+
+}  // namespace thermfit

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "thermfit/gap/diagnosis.hpp"
+#include "thermfit/gap/explanation.hpp"
+#include "thermfit/gap/shrink.hpp"
+
+namespace thermfit {
+
+/// Residuals of the four stages: as simulated, calibrated, with effect (all held out), and the noise of each channel.
+struct StageResiduals {
+  Residuals as_simulated, calibrated, with_effect;
+  Vector noise;  ///< by channel
+};
+
+/// Differences of batches that repeat each other (the same clock and inputs, ambient within `tolerance_K`), divided by
+/// the square root of 2: noise with no model in it. Empty where nothing was repeated.
+inline SeriesByBatch repeat_differences(const MachineRecord& seen, std::size_t channel, double tolerance_K = 0.5) {
+  SeriesByBatch result;
+  for (std::size_t a = 0; a < seen.batches(); ++a)
+    for (std::size_t b = a + 1; b < seen.batches(); ++b) {
+      const Excitation &x = seen.excitations[a], &y = seen.excitations[b];
+      if (x.samples() != y.samples() || x.inputs.cols() != y.inputs.cols() || x.time_s != y.time_s) continue;
+      if (x.inputs.cols() > 0 && x.inputs != y.inputs) continue;
+      if ((x.ambient_degC - y.ambient_degC).cwiseAbs().maxCoeff() > tolerance_K) continue;
+      if ((x.start_degC - y.start_degC).cwiseAbs().maxCoeff() > tolerance_K) continue;
+      const SeriesByBatch& measured = seen.channels[channel].measured;
+      result.push_back((measured[a] - measured[b]) / std::sqrt(2.0));
+    }
+  return result;
+}
+
+/// The noise of each channel: from repeats, else from the high-frequency part of what the best account leaves.
+inline Vector noise_floor(const MachineRecord& seen, const Residuals& best) {
+  Vector result(static_cast<Index>(seen.channels.size()));
+  for (std::size_t c = 0; c < seen.channels.size(); ++c) {
+    const SeriesByBatch repeats = repeat_differences(seen, c);
+    double squares = 0, count = 0;
+    for (const Vector& r : repeats)
+      for (Index k = 0; k < r.size(); ++k)
+        if (!std::isnan(r(k))) squares += r(k) * r(k), ++count;
+    result(static_cast<Index>(c)) = count > 0 ? std::sqrt(squares / count) : high_frequency_sd(best[c]);
+  }
+  return result;
+}
+
+/// Squares by batch of the channels of one kind: `displacement`, or all temperatures together.
+inline BatchSquares squares_of(const MachineRecord& seen, const Residuals& residual,
+                               const std::vector<std::size_t>& of) {
+  BatchSquares result{Vector::Zero(static_cast<Index>(seen.batches())),
+                      Vector::Zero(static_cast<Index>(seen.batches()))};
+  for (const std::size_t c : of)
+    for (std::size_t b = 0; b < seen.batches(); ++b)
+      for (Index k = 0; k < residual[c][b].size(); ++k)
+        if (const double r = residual[c][b](k); !std::isnan(r)) {
+          result.sum(static_cast<Index>(b)) += r * r;
+          ++result.count(static_cast<Index>(b));
+        }
+  return result;
+}
+
+/// The gap of a campaign in the first displacement (or all temperatures, where there is none), by stage, batch and
+/// channel.
+inline Gap gap_of(const MachineRecord& seen, const StageResiduals& stages, std::uint64_t seed, bool held_out) {
+  std::vector<std::size_t> of;
+  for (std::size_t c = 0; c < seen.channels.size() && of.empty(); ++c)
+    if (seen.channels[c].displacement) of = {c};
+  Gap gap;
+  gap.output = of.empty() ? "temperatures" : seen.channels[of[0]].name;
+  gap.unit = of.empty() ? "K" : "um";
+  if (of.empty())
+    for (std::size_t c = 0; c < seen.channels.size(); ++c) of.push_back(c);
+  const auto noise_over = [&](const std::vector<std::size_t>& channels) {
+    double sum = 0;
+    for (const std::size_t c : channels)
+      sum += stages.noise(static_cast<Index>(c)) * stages.noise(static_cast<Index>(c));
+    return std::sqrt(sum / static_cast<double>(channels.size()));
+  };
+  const auto staged = [&](const std::vector<std::size_t>& channels) {
+    return StagedGap{squares_of(seen, stages.as_simulated, channels).rms(),
+                     squares_of(seen, stages.calibrated, channels).rms(),
+                     squares_of(seen, stages.with_effect, channels).rms(), noise_over(channels)};
+  };
+  gap.rms = staged(of);
+  gap.held_out = held_out;
+  const BatchSquares given = squares_of(seen, stages.as_simulated, of),
+                     before = squares_of(seen, stages.calibrated, of), after = squares_of(seen, stages.with_effect, of);
+  gap.shrink_percent = shrink_percent(gap.rms.calibrated, gap.rms.with_effect);
+  gap.shrink_ci95_percent = shrink_interval(before, after, 0.95, seed);
+  gap.shrink_of_explainable_percent =
+      shrink_of_explainable_percent(gap.rms.calibrated, gap.rms.with_effect, gap.rms.noise);
+  for (std::size_t b = 0; b < seen.batches(); ++b) {
+    const Index i = static_cast<Index>(b);
+    gap.per_batch.push_back({seen.names[b], {given.rms(i), before.rms(i), after.rms(i), gap.rms.noise}});
+  }
+  for (std::size_t c = 0; c < seen.channels.size(); ++c)
+    gap.per_sensor.push_back({seen.channels[c].name, seen.channels[c].displacement ? "um" : "K", staged({c})});
+  return gap;
+}
+
+}  // namespace thermfit

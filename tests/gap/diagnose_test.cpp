@@ -1,0 +1,93 @@
+#include "thermfit/gap/diagnose.hpp"
+
+#include "support/bench_campaign.hpp"
+#include "support/catch.hpp"
+
+using namespace thermfit;
+
+namespace {
+
+Diagnosis diagnosed(const ThermalNetwork& plant, std::size_t batches = 6, DiagnoseOptions options = {}) {
+  options.search.threads = 1;
+  return diagnose(bench::machine(), bench::campaign(plant, batches, 11), standard_effects(), options);
+}
+
+ThermalNetwork with(ThermalNetwork::AddedEffect effect) {
+  ThermalNetwork plant = bench::machine();
+  plant.effects = {std::move(effect)};
+  return plant;
+}
+
+}  // namespace
+
+TEST_CASE("a machine that the simulator matches has no gap to explain") {
+  const Diagnosis found = diagnosed(bench::machine());
+  CHECK(found.verdict == Verdict::none);
+  CHECK(found.effects.empty());
+  CHECK(found.gap.rms.calibrated == Approx(0.25).epsilon(0.15));
+}
+
+TEST_CASE("parameters that are off are miscalibration, and those that moved are named") {
+  ThermalNetwork plant = bench::machine();
+  plant.heat_sources[0].power_W *= 1.5;
+  plant.links[1].conductance_W_per_K *= 0.7;
+  const Diagnosis found = diagnosed(plant);
+  CHECK(found.verdict == Verdict::miscalibration);
+  REQUIRE_FALSE(found.calibration.empty());
+  CHECK(found.calibration[0].parameter == "power of bearing");
+  CHECK(found.calibration[0].to == Approx(225).epsilon(0.05));
+}
+
+TEST_CASE("a missing link is named with its conductance, and the gap shrinks to the noise on held-out batches") {
+  const Diagnosis found = diagnosed(with({"missing-link", "head-bed", "", {{"conductance_W_per_K", 25}}}));
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].effect == "missing-link");
+  CHECK(found.effects[0].location == "head-bed");
+  CHECK(found.effects[0].confidence > 0.5);
+  REQUIRE_FALSE(found.effects[0].parameters.empty());
+  CHECK(std::abs(found.effects[0].parameters[0].value - 25) < 4 * found.effects[0].parameters[0].standard_error + 0.5);
+  CHECK(found.gap.rms.with_effect < 0.32);
+  CHECK(found.gap.shrink_ci95_percent.low <= found.gap.shrink_percent);
+  CHECK(found.gap.shrink_ci95_percent.high >= found.gap.shrink_percent);
+}
+
+TEST_CASE("a drifting sensor is named though the displacement hardly changes") {
+  const Diagnosis found = diagnosed(with({"sensor-drift", "T3", "", {{"rate_K_per_h", 0.4}}}));
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].effect == "sensor-drift");
+  CHECK(found.effects[0].location == "T3");
+}
+
+TEST_CASE("an effect that is left out of the catalogue is not named") {
+  DiagnoseOptions options;
+  options.without = {"speed-shift"};
+  const ThermalNetwork plant = with({"speed-shift", "displacement", "spindle_rpm", {{"shift_um", 6}, {"scale", 4000}}});
+  CHECK(diagnosed(plant).effects.at(0).effect == "speed-shift");
+  for (const FoundEffect& one : diagnosed(plant, 6, options).effects) CHECK(one.effect != "speed-shift");
+}
+
+TEST_CASE("one batch gives figures of the fit itself and says so") {
+  const Diagnosis found = diagnosed(with({"missing-link", "head-bed", "", {{"conductance_W_per_K", 25}}}), 1);
+  CHECK_FALSE(found.gap.held_out);
+  CHECK_FALSE(found.weaker_claims.empty());
+}
+
+TEST_CASE("the same campaign gives the same diagnosis, whatever the number of threads") {
+  const ThermalNetwork plant = with({"sensor-drift", "T3", "", {{"rate_K_per_h", 0.4}}});
+  const Campaign real = bench::campaign(plant, 4, 11);
+  DiagnoseOptions one, two;
+  one.search.threads = 1;
+  two.search.threads = 2;
+  const Diagnosis a = diagnose(bench::machine(), real, standard_effects(), one);
+  const Diagnosis b = diagnose(bench::machine(), real, standard_effects(), two);
+  CHECK(a.gap.rms.with_effect == b.gap.rms.with_effect);
+  REQUIRE(a.effects.size() == b.effects.size());
+  for (std::size_t i = 0; i < a.effects.size(); ++i) CHECK(a.effects[i].confidence == b.effects[i].confidence);
+}
+
+TEST_CASE("an unknown effect name and an empty campaign are refused in words") {
+  DiagnoseOptions options;
+  options.effects = {"gremlins"};
+  CHECK_THROWS_AS(diagnosed(bench::machine(), 2, options), Error);
+  CHECK_THROWS_AS(diagnose(bench::machine(), {}, standard_effects()), Error);
+}
