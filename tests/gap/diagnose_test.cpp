@@ -38,15 +38,18 @@ TEST_CASE("parameters that are off are miscalibration, and those that moved are 
   CHECK(found.calibration[0].to == Approx(225).epsilon(0.05));
 }
 
-TEST_CASE("a missing link is named with its conductance, and the gap shrinks to the noise on held-out batches") {
-  const Diagnosis found = diagnosed(with({"missing-link", "head-bed", "", {{"conductance_W_per_K", 25}}}));
+TEST_CASE("an unmodelled heat source is named with its power, and the gap shrinks to the noise on held-out batches") {
+  const Diagnosis found = diagnosed(with({"heat-source", "column", "constant", {{"power_W", 100}, {"scale", 1}}}));
   REQUIRE(found.effects.size() == 1);
-  CHECK(found.effects[0].effect == "missing-link");
-  CHECK(found.effects[0].location == "head-bed");
-  CHECK(found.effects[0].confidence > 0.5);
-  REQUIRE_FALSE(found.effects[0].parameters.empty());
-  CHECK(std::abs(found.effects[0].parameters[0].value - 25) < 4 * found.effects[0].parameters[0].standard_error + 0.5);
+  const FoundEffect& effect = found.effects[0];
+  CHECK(effect.effect == "heat-source");
+  CHECK(effect.location == "column");
+  CHECK(effect.driver == "constant");
+  CHECK(effect.confidence > 0.5);
+  REQUIRE_FALSE(effect.parameters.empty());
+  CHECK(std::abs(effect.parameters[0].value - 100) < 4 * effect.parameters[0].standard_error);
   CHECK(found.gap.rms.with_effect < 0.32);
+  CHECK(found.gap.shrink_percent > 80);
   CHECK(found.gap.shrink_ci95_percent.low <= found.gap.shrink_percent);
   CHECK(found.gap.shrink_ci95_percent.high >= found.gap.shrink_percent);
 }
@@ -67,7 +70,7 @@ TEST_CASE("an effect that is left out of the catalogue is not named") {
 }
 
 TEST_CASE("one batch gives figures of the fit itself and says so") {
-  const Diagnosis found = diagnosed(with({"missing-link", "head-bed", "", {{"conductance_W_per_K", 25}}}), 1);
+  const Diagnosis found = diagnosed(with({"heat-source", "column", "constant", {{"power_W", 100}, {"scale", 1}}}), 1);
   CHECK_FALSE(found.gap.held_out);
   CHECK_FALSE(found.weaker_claims.empty());
 }

@@ -82,16 +82,21 @@ inline const Explanation* faulty_offset(const Investigation& found, double least
 
 /// From what was tried to a verdict.
 ///
-/// A gap is real when its held-out excess is more than a right machine leaves. It is explained when the best account
-/// closes most of that excess on batches it has not seen; accounts share the probability by their held-out scores. A
-/// second effect is named only when it closes most of what the first leaves.
+/// A gap is real when its held-out excess is more than a right machine leaves, or when an effect explains far better
+/// what calibration only absorbs, both in evidence and in held-out score. It is explained when the best account closes
+/// most of that excess on batches it has not seen; accounts share the probability by their held-out scores. A second
+/// effect is named only when it closes most of what the first leaves.
 inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const JudgingOptions& options = {}) {
   Judgement result;
   result.best = result.nearest = &found.calibrated;
   const double before = excess_of(misfit_of(found.seen, found.calibrated.held.residual));
   const double placed =
       found.placed.residual.empty() ? before : excess_of(misfit_of(found.seen, found.placed.residual));
-  if (before <= options.least_excess) {
+  const double gain = found.single.empty()
+                          ? 0
+                          : std::min(found.single[0].held.log_score - found.calibrated.held.log_score,
+                                     found.single[0].fit.log_evidence - found.calibrated.fit.log_evidence);
+  if (before <= options.least_excess && gain < options.least_gain) {
     if (const Explanation* offset = detail::faulty_offset(found, options.offset_odds)) {
       const double odds = std::exp(offset->fit.log_evidence - found.calibrated.fit.log_evidence -
                                    std::log(static_cast<double>(found.seen.channels.size())));
@@ -123,7 +128,7 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
   const double after = excess(accounts.front());
   result.nearest = &accounts.front();
-  result.closed_share = 1 - after / before;
+  result.closed_share = before > options.least_excess ? 1 - after / before : 1;
   const double known = probability_known(result.closed_share, options);
   const std::vector<double> weight = probabilities(accounts, options.score_power);
   if (known < 0.5) return result;

@@ -16,6 +16,7 @@ struct JudgingOptions {
   /// what they would be if the model were exact (a coarsened likelihood).
   double score_power = 0.1;
   double least_excess = 1;      ///< below it a gap is what a right machine leaves
+  double least_gain = 100;      ///< nats of score and evidence that make an effect credible below that
   double half_closed = 0.55;    ///< share of the excess that an effect closes at which known and unknown are even
   double closing_width = 0.07;  ///< of the logistic curve around it
   double second_closes = 0.5;   ///< share of what one effect leaves that a second must close to be named
