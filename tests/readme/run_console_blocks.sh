@@ -30,7 +30,8 @@ matches() {
     END { exit !fits(1, 1) }' "$2"
 }
 
-failed=0 commands=0 line_number=0 inside=0 skip=0 command='' : >"$scratch/.expected"
+failed=0 commands=0 line_number=0 inside=0 skip=0 command=''
+: >"$scratch/.expected"
 finish() {
   [ -n "$command" ] || return 0
   commands=$((commands + 1))
