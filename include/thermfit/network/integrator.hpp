@@ -113,7 +113,7 @@ class Integrator {
       }
     return slope.cwiseQuotient(regimes_.capacities()).maxCoeff();
   }
-  int substeps_for(double h) const { return 1 + static_cast<int>(std::min(1000.0, h * rate_bound_ / 0.1)); }
+  int substeps_for(double h) const { return 1 + static_cast<int>(std::min(1000.0, h * rate_bound_ / 0.03)); }
 
   /// Heat that is held over the step, as modal force, and its slopes.
   void set_heat(Index sample, double time_s) {
