@@ -8,12 +8,26 @@
 
 namespace thermfit {
 
-/// Several problems of one input, told at once. `what()` has a line each; place() and the rest are the first's.
+/// Several problems of one input, told at once. `what()` has a line each; place() and the rest are the first's. What is
+/// wrong alike with several files as a whole, such as a column that none of them has, is one line.
 class Errors : public Error {
  public:
   explicit Errors(std::vector<Error> problems, std::string last_line = {})
       : Error(problems.at(0)), problems_(std::move(problems)) {
-    for (const Error& problem : problems_) text_ += (text_.empty() ? "" : "\n") + std::string(problem.what());
+    std::vector<bool> told(problems_.size(), false);
+    for (std::size_t i = 0; i < problems_.size(); ++i) {
+      if (told[i]) continue;
+      std::size_t more = 0;
+      for (std::size_t j = i + 1; j < problems_.size(); ++j) {
+        if (!same_of_whole_files(problems_[i], problems_[j])) continue;
+        told[j] = true;
+        ++more;
+      }
+      const std::string& place = problems_[i].place();
+      std::string line = problems_[i].what();
+      if (more > 0) line.insert(place.size(), " and " + std::to_string(more) + " more");
+      text_ += (text_.empty() ? "" : "\n") + line;
+    }
     if (!last_line.empty()) text_ += '\n' + last_line;
   }
 
@@ -21,6 +35,12 @@ class Errors : public Error {
   const std::vector<Error>& problems() const noexcept { return problems_; }
 
  private:
+  /// Alike but for the file, and not about one line of it.
+  static bool same_of_whole_files(const Error& a, const Error& b) {
+    return !a.place().empty() && a.place().find(':') == std::string::npos && b.place().find(':') == std::string::npos &&
+           a.found() == b.found() && a.allowed() == b.allowed() && a.remedy() == b.remedy();
+  }
+
   std::vector<Error> problems_;
   std::string text_;
 };
