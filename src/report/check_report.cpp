@@ -87,6 +87,8 @@ Json batch_json(const CheckedBatch& one) {
           {"source", batch.source},
           {"sha256", batch.digest},
           {"rows", batch.rows()},
+          {"dropped_rows", batch.dropped_rows},
+          {"held_values", batch.held_values},
           {"first_time_s", batch.has_time() ? number(batch.time_s(0)) : Json(nullptr)},
           {"last_time_s", batch.has_time() ? number(batch.time_s(batch.rows() - 1)) : Json(nullptr)},
           {"usual_step_s", number(usual_step_s(batch))},

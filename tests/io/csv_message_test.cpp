@@ -158,6 +158,10 @@ const std::vector<Case> cases{
     {"something in a last column without name",
      "time_min,T1,\n0,20,\n#" + std::string(70000, '.') + "\n# more\n1,21,5\n",
      "a.csv:5:6: '5' in a column without a name; give the last column a name"},
+    {"a row without the last separator of the others", "time_min;T1;Z;\n0;20;\n1;20;1;\n",
+     "a.csv:2: 3 fields under 4 names: the last, without name, is not there; allowed: a field for each name; complete "
+     "the "
+     "row, or delete it"},
     {"a quote never closed", "time_min,T1\n0,\"20\n",
      "a.csv:2:3: a quote that is opened here and never closed; close the field on its line; a quote inside a field is "
      "written \"\""},

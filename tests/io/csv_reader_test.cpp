@@ -176,6 +176,7 @@ TEST_CASE("missing values follow the policy and are counted", "[io]") {
   CHECK(reading.batches[0].time_s == (Vector(2) << 0, 3).finished());
   CHECK(reading.files[0].missing == 2);
   CHECK(reading.files[0].dropped_rows == 2);
+  CHECK(reading.batches[0].dropped_rows == 2);
   CHECK(reading.notes(options)[0].find("2 rows left out for 2 missing values, first ") != std::string::npos);
   CHECK(reading.notes(options)[0].find("K01.csv:3:3 (T1)") != std::string::npos);
 
@@ -183,6 +184,7 @@ TEST_CASE("missing values follow the policy and are counted", "[io]") {
   reading = read(text, options);
   CHECK(reading.batches[0].temperatures.values == (Matrix(4, 2) << 20, 30, 20, 31, 22, 31, 23, 33).finished());
   CHECK(reading.notes(options)[0].find("2 missing values held, first ") != std::string::npos);
+  CHECK(reading.batches[0].held_values == 2);
 
   options.missing = MissingValues::keep;
   reading = read(text, options);

@@ -28,13 +28,15 @@ struct Channels {
 /// Inputs keep the unit of their column. Every member has rows() rows, except that `time_s` may be empty: a batch
 /// without a clock can be fitted, but not simulated.
 struct Batch {
-  std::string name;       ///< file stem or value of the batch column, e.g. "K01"
-  std::string source;     ///< path it was read from; empty when made in memory
-  std::string digest;     ///< SHA-256 of its numbers, hex; empty when made in memory
-  Vector time_s;          ///< strictly increasing; empty when the data have no time
-  Channels temperatures;  ///< degC, absolute
-  Channels errors;        ///< um, the responses
-  Channels inputs;        ///< known inputs: spindle_rpm, feed_mm_min, coolant, …
+  std::string name;        ///< file stem or value of the batch column, e.g. "K01"
+  std::string source;      ///< path it was read from; empty when made in memory
+  std::string digest;      ///< SHA-256 of its numbers, hex; empty when made in memory
+  Vector time_s;           ///< strictly increasing; empty when the data have no time
+  Channels temperatures;   ///< degC, absolute
+  Channels errors;         ///< um, the responses
+  Channels inputs;         ///< known inputs: spindle_rpm, feed_mm_min, coolant, …
+  Index dropped_rows = 0;  ///< rows the reader left out because a value was missing (`--missing drop`)
+  Index held_values = 0;   ///< missing values replaced by the last one of their channel (`--missing hold`)
 
   Index rows() const {
     if (temperatures.values.cols() > 0) return temperatures.values.rows();

@@ -28,6 +28,7 @@ namespace detail {
 struct GrowingBatch {
   std::string key;
   std::vector<double> time_s, values;
+  Index held_values = 0;
 };
 
 inline Channels channels(const std::vector<std::string>& names, const GrowingBatch& rows, std::size_t first,
@@ -66,9 +67,10 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
   while (reader.next(row)) {
     if (!current || current->key != row.batch) {
       const auto [found, fresh] = index.emplace(row.batch, batches.size());
-      if (fresh) batches.push_back({std::string(row.batch), {}, {}});
+      if (fresh) batches.push_back({std::string(row.batch), {}, {}, 0});
       current = &batches[found->second];
     }
+    current->held_values += row.held_values;
     current->time_s.push_back(row.time_s);
     current->values.insert(current->values.end(), row.temperatures.data(), row.temperatures.data() + width);
   }
@@ -81,6 +83,8 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     batch.temperatures = channels(roles.temperatures, rows, 0, width);
     batch.errors = channels(roles.errors, rows, roles.temperatures.size(), width);
     batch.inputs = channels(roles.inputs, rows, roles.temperatures.size() + roles.errors.size(), width);
+    batch.dropped_rows = reader.dropped_rows(rows.key);
+    batch.held_values = rows.held_values;
     batch.digest = batch_digest(batch);
     reading.batches.push_back(std::move(batch));
     rows = {};

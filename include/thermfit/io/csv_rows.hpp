@@ -21,6 +21,7 @@ struct CsvRow {
   std::string_view batch;  ///< value of the batch column; empty without one
   double time_s;           ///< NaN without a clock
   Values temperatures, errors, inputs;
+  Index held_values = 0;  ///< values that were missing and are the last ones of their channel
 };
 
 /// What was met while reading one file.
@@ -56,6 +57,12 @@ class CsvRowReader {
 
   const CsvFile& file() const { return file_; }
 
+  /// Rows of a batch (by its value in the batch column) left out so far for missing values.
+  Index dropped_rows(const std::string& batch = {}) const {
+    const auto found = states_.find(batch);
+    return found == states_.end() ? 0 : found->second.dropped_rows;
+  }
+
   /// The next row that is good; false at the end, after which missing values and an absence of rows are told.
   bool next(CsvRow& row) {
     std::string_view line;
@@ -76,7 +83,8 @@ class CsvRowReader {
                         time_s_,
                         {values, count(roles.temperatures)},
                         {values + count(roles.temperatures), count(roles.errors)},
-                        {values + count(roles.temperatures) + count(roles.errors), count(roles.inputs)}};
+                        {values + count(roles.temperatures) + count(roles.errors), count(roles.inputs)},
+                        options_.missing == MissingValues::hold ? static_cast<Index>(missing_.size()) : 0};
       return true;
     }
     finish();
@@ -96,6 +104,7 @@ class CsvRowReader {
     bool has_origin = false;
     DateTime origin{};
     std::vector<double> held;
+    Index dropped_rows = 0;
   };
 
   bool no_row_fits(const detail::CsvEvidence& evidence, const detail::CsvHeader& header) {
@@ -196,15 +205,16 @@ class CsvRowReader {
   }
 
   Error ragged() const {
-    const std::size_t found = fields_.size(), wanted = layout_.columns.size();
+    const std::size_t found = fields_.size(), names = layout_.columns.size(), wanted = layout_.slots.size();
+    const char separator = file_.dialect.separator;
     const std::string count = std::string(all_rows_ragged_ ? "in every row " : "") + std::to_string(found) +
                               (found == 1 ? " field" : " fields") + " under " + std::to_string(wanted) +
                               (wanted == 1 ? " name" : " names");
     if (found < wanted)
-      return Error(
-          here(), count + ": " + name_of(found) + (found + 1 < wanted ? " and what follows are" : " is") + " not there",
-          "a field for each name", "complete the row, or delete it");
-    const char separator = file_.dialect.separator;
+      return Error(here(),
+                   count + ": " + (found < names ? name_of(found) : "the last, without name,") +
+                       (found + 1 < wanted ? " and what follows are" : " is") + " not there",
+                   "a field for each name", "complete the row, or delete it");
     if (found == wanted + 1 && fields_.back().text.empty())
       return Error(here(fields_.back().column), count + ": the row ends in a " + detail::separator_name(separator),
                    "a field for each name",
@@ -280,6 +290,7 @@ class CsvRowReader {
       return true;
     }
     ++file_.dropped_rows;
+    ++state_->dropped_rows;
     return false;
   }
 
