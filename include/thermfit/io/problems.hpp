@@ -18,7 +18,7 @@ class Errors : public Error {
     for (std::size_t i = 0; i < problems_.size(); ++i) {
       if (told[i]) continue;
       std::size_t more = 0;
-      for (std::size_t j = i + 1; j < problems_.size(); ++j) {
+      for (std::size_t j = i + 1; is_of_whole_file(problems_[i]) && j < problems_.size(); ++j) {
         if (!same_of_whole_files(problems_[i], problems_[j])) continue;
         told[j] = true;
         ++more;
@@ -35,10 +35,14 @@ class Errors : public Error {
   const std::vector<Error>& problems() const noexcept { return problems_; }
 
  private:
+  static bool is_of_whole_file(const Error& problem) {
+    return !problem.place().empty() && problem.place().find(':') == std::string::npos;
+  }
+
   /// Alike but for the file, and not about one line of it.
   static bool same_of_whole_files(const Error& a, const Error& b) {
-    return !a.place().empty() && a.place().find(':') == std::string::npos && b.place().find(':') == std::string::npos &&
-           a.found() == b.found() && a.allowed() == b.allowed() && a.remedy() == b.remedy();
+    return is_of_whole_file(a) && is_of_whole_file(b) && a.found() == b.found() && a.allowed() == b.allowed() &&
+           a.remedy() == b.remedy();
   }
 
   std::vector<Error> problems_;
