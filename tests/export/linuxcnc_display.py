@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """The DISPLAY of the simulated control: drives it, sets temperatures, prints where the Z motor is told to go (mm)."""
 
 import subprocess
@@ -6,8 +7,9 @@ import time
 
 import linuxcnc
 
+sys.stdout = open("motor.txt", "w")  # linuxcnc keeps stdout for itself
 command, status = linuxcnc.command(), linuxcnc.stat()
-component = sys.argv[-1] if len(sys.argv) > 1 and not sys.argv[-1].endswith(".ini") else "thermfittest"
+component = "thermfittest"
 
 
 def hal(*words):

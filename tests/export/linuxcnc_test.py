@@ -75,9 +75,8 @@ net x NAME.offset-x sampler.0.pin.0
 net z NAME.offset-z sampler.0.pin.1
 net s NAME.status sampler.0.pin.2
 loadusr -w halstreamer readings.txt
-loadusr -Wn sampling halsampler -n ROWS answers.txt
 start
-waitusr sampling
+loadusr -w halsampler -n ROWS answers.txt
 """.replace("NAME", NAME).replace("ROWS", str(len(rows))))
     as_user("halrun", "-f", "replay.hal")
     answers = [line.split() for line in open(path("answers.txt"))]
@@ -122,7 +121,7 @@ MACHINE = sim
 VERSION = 1.1
 DEBUG = 0
 [DISPLAY]
-DISPLAY = /usr/bin/python3 %s
+DISPLAY = %s
 [TASK]
 TASK = milltask
 CYCLE_TIME = 0.01
@@ -165,8 +164,9 @@ net counts NAME.offset-z-counts axis.z.eoffset-counts
 setp axis.z.eoffset-scale 0.0001
 setp axis.z.eoffset-enable 1
 """.replace("NAME", NAME))
-    out = as_user("linuxcnc", "sim.ini")
-    print(out[out.find("off "):].strip())
+    as_user("linuxcnc", "sim.ini")
+    out = open(path("motor.txt")).read()
+    print(out.strip())
     return {line.split()[0]: (float(line.split()[1]), int(line.split()[5])) for line in out.splitlines() if " state " in line}
 
 
