@@ -5,6 +5,7 @@ simulated control without a screen and watches the command of its Z motor. Needs
 component, an ordinary user then runs it.
 """
 
+import json
 import math
 import os
 import pwd
@@ -94,12 +95,10 @@ def compare(what, options, rows, expected):
 
 def predict(rows):
     """What `thermfit predict` says about the rows, as corrections."""
-    text = readings.as_csv(rows)
-    write("batch.csv", text)
-    answer = subprocess.run([thermfit, "predict", model, path("batch.csv"), "--csv"], capture_output=True, text=True, check=True)
-    lines = [line.split(",") for line in answer.stdout.splitlines()]
-    columns = [lines[0].index(name) for name in ["X", "Z"]]
-    return [([-float(row[i]) for i in columns], None) for row in lines[1:]]
+    write("batch.csv", readings.as_csv(rows))
+    answer = subprocess.run([thermfit, "predict", model, path("batch.csv"), "--json"], capture_output=True, text=True,
+                            check=True).stdout
+    return [([-x for x in row], None) for row in json.loads(answer)["batches"][0]["predicted_um"]]
 
 
 def machine(joint):
@@ -175,7 +174,7 @@ try:
     compare("replay with faults against thermfit run", OPTIONS, rows, readings.run(thermfit, model, rows, *OPTIONS))
     rows = readings.readings(2000, seed=4, faults=False)
     free = ["--period", "0.001", "--slew", "1e6", "--clamp", "1e5", "--domain", "ignore", "--sign", "correction"]
-    if 0: compare("replay of a batch against thermfit predict", free, rows, predict(rows))
+    compare("replay of a batch against thermfit predict", free, rows, predict(rows))
     motor = simulate()
     expected = {"off": -10, "cold": -10.001, "warm": -10.021, "bad": -10.021, "still-bad": -10.021, "good": -10.021,
                 "hot": -10.040, "stopped": -10}

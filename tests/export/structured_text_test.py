@@ -1,7 +1,9 @@
 """structured_text_test.py THERMFIT MODEL: exported function blocks do what `thermfit run` does, and notice when not."""
 
+import json
 import subprocess
 import sys
+import tempfile
 
 import numpy
 
@@ -48,6 +50,21 @@ rows = readings.readings(3000)
 wrong = differences(block, rows, readings.run(thermfit, model, rows, *options))
 print("3000 rows with faults: %d differ in a bit of offset or status" % wrong)
 assert wrong == 0
+
+free = ["--slew", "1e6", "--clamp", "1e5", "--domain", "ignore"]
+batch = readings.readings(500, seed=4, faults=False)
+with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+    file.write(readings.as_csv(batch))
+    file.flush()
+    answer = subprocess.run([thermfit, "predict", model, file.name, "--json"], capture_output=True, text=True, check=True)
+predicted = json.loads(answer.stdout)["batches"][0]["predicted_um"]
+device = structured_text.load(export(*free).split("FUNCTION_BLOCK thermal_test")[0])["thermal"]()
+worst = 0
+for row, expected in zip(batch, predicted):
+    device(Enable=True, **{"Temperature_" + name: value for name, value in zip(readings.SENSORS, row)})
+    worst = max(worst, abs(device.offset_x_um + expected[0]), abs(device.offset_z_um + expected[1]))
+print("500 rows against thermfit predict: largest difference %.1e um" % worst)
+assert worst < 1e-12
 
 broken = compensator.replace("demand2 := demand2 + 2.0 * s1_value", "demand2 := demand2 + 2.001 * s1_value", 1)
 assert broken != compensator
