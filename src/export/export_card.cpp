@@ -157,10 +157,11 @@ ControllerSource export_card(const ExportRequest& request) {
   text +=
       "\nThe whole guard (rate, stuck and lost sensors, training domain, time-out) is in the function block of\n"
       "`thermfit export --target st`: run that in the PLC and write its output here.\n";
-  text +=
-      "\n## Check of the sign\nWith the axis at rest and a probe on it, enter " + amount(10, request.unit) +
-      " (10 um). A correction must move the axis towards plus by 10 um;\nif it moves towards minus, the control takes "
-      "the error: export with --sign error. If it does not move, it is not switched on.\n\n## Manuals\n";
+  const bool correction = request.wishes.sign == OutputSign::correction;
+  text += "\n## Check of the sign\nWith the axis at rest and a probe on it, enter " + amount(10, request.unit) +
+          " (10 um). The axis must move by 10 um towards " + (correction ? "plus" : "minus") +
+          ".\nIf it moves the other way, export with --sign " + (correction ? "error" : "correction") +
+          ". If it does not move, the compensation is not switched on.\n\n## Manuals\n";
   for (const std::string& manual : control.manuals) text += "- " + manual + "\n";
   return text;
 }
