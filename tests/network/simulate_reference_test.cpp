@@ -1,8 +1,6 @@
 #include <cmath>
-#include <filesystem>
 
 #include "support/catch.hpp"
-#include "support/shared_data.hpp"
 #include "thermfit/io/csv_reader.hpp"
 #include "thermfit/io/machine_json.hpp"
 #include "thermfit/network/simulate.hpp"
@@ -11,7 +9,7 @@ using namespace thermfit;
 
 TEST_CASE("24 machines x 9 batches simulate to the last printed digit of an independent implementation",
           "[network][reference]") {
-  REQUIRE_SHARED_DATA(data);
+  const std::string data = THERMFIT_SOURCE_DIR "/data";
   const EffectLibrary none;
   int compared = 0;
   double worst = 0;

@@ -17,8 +17,9 @@ inline std::string csv_field(const std::string& text) {
   return result + '"';
 }
 
-/// A batch as CSV that read_campaign reads back: `time_s`, temperatures, errors, inputs. With `decimals` below 0 every
-/// number is the shortest text that gives the same double again; missing values are empty.
+/// A batch as CSV that read_campaign reads back: `time_s`, temperatures, errors, inputs. Numbers are the
+/// shortest text that gives the same double again, unless `decimals` of temperatures and errors is given; missing
+/// values are empty.
 inline std::string write_csv(const Batch& batch, int decimals = -1) {
   std::string text;
   const char* separator = "";
@@ -26,8 +27,8 @@ inline std::string write_csv(const Batch& batch, int decimals = -1) {
     text += separator + one;
     separator = ",";
   };
-  const auto number = [&](double value) {
-    field(!(value == value) ? std::string() : decimals < 0 ? exact_text(value) : fixed_text(value, decimals));
+  const auto number = [&](double value, int digits) {
+    field(!(value == value) ? std::string() : digits < 0 ? exact_text(value) : fixed_text(value, digits));
   };
   if (batch.has_time()) field("time_s");
   const Channels* const groups[] = {&batch.temperatures, &batch.errors, &batch.inputs};
@@ -38,7 +39,7 @@ inline std::string write_csv(const Batch& batch, int decimals = -1) {
     separator = "";
     if (batch.has_time()) field(exact_text(batch.time_s(row)));
     for (const Channels* group : groups)
-      for (Index c = 0; c < group->count(); ++c) number(group->values(row, c));
+      for (Index c = 0; c < group->count(); ++c) number(group->values(row, c), group == &batch.inputs ? -1 : decimals);
     text += '\n';
   }
   return text;
