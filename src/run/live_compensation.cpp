@@ -124,7 +124,8 @@ std::string LiveCompensation::answer_header() const {
 std::string LiveCompensation::answer(std::size_t line_number) {
   const CompensatorStatus status = device_.step(readings_);
   std::string text = std::to_string(line_number);
-  for (std::size_t j = 0; j < errors_.size(); ++j) text += ',' + (shadow_ ? "0" : exact_text(device_.offset_um()[j] + 0.0));
+  for (std::size_t j = 0; j < errors_.size(); ++j)
+    text += ',' + (shadow_ ? "0" : exact_text(device_.offset_um()[j] + 0.0));
   text += std::string(",") + state_name(status.state()) + ',' + std::to_string(status.word) + ',';
   if (status.sensor() > 0) text += quoted(temperatures_[static_cast<std::size_t>(status.sensor() - 1)]);
   text += std::string(",") + fault_name(status.fault());
