@@ -67,11 +67,18 @@ inline double chi2_quantile(double probability, double degrees) {
   return detail::invert([&](double x) { return detail::incomplete_gamma(degrees / 2, x / 2); }, probability);
 }
 
-/// Of Student's t distribution.
+/// Probability that Student's t exceeds `t` in size: the two-sided p-value.
+inline double t_two_sided(double t, double degrees) {
+  detail::require_freedom(degrees);
+  return detail::incomplete_beta(degrees / 2, .5, degrees / (degrees + t * t));
+}
+
+/// Of Student's t distribution; from the tail, so that probabilities near 0 and 1 keep their digits.
 inline double t_quantile(double probability, double degrees) {
   detail::require_probability(probability);
   if (probability == .5) return 0;
-  const double size = std::sqrt(f_quantile(2 * std::max(probability, 1 - probability) - 1, 1, degrees));
+  const double tails = 2 * std::min(probability, 1 - probability);
+  const double size = detail::invert([&](double t) { return -t_two_sided(t, degrees); }, -tails);
   return probability > .5 ? size : -size;
 }
 
@@ -81,12 +88,6 @@ inline double normal_quantile(double probability) {
   if (probability == .5) return 0;
   const double size = std::sqrt(chi2_quantile(2 * std::max(probability, 1 - probability) - 1, 1));
   return probability > .5 ? size : -size;
-}
-
-/// Probability that Student's t exceeds `t` in size: the two-sided p-value.
-inline double t_two_sided(double t, double degrees) {
-  detail::require_freedom(degrees);
-  return detail::incomplete_beta(degrees / 2, .5, degrees / (degrees + t * t));
 }
 
 }  // namespace thermfit
