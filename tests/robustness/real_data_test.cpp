@@ -54,8 +54,8 @@ TEST_CASE("ace_lathe: figures of days left out, on absolute temperatures and on 
 
 TEST_CASE("gooddash: figures of runs left out, on temperatures as recorded", "[robustness]") {
   REQUIRE_SHARED_DATA(folder);
-  const std::vector<Moments> batches = read(folder + "/real/gooddash/", "run", 1, 5, "dT00", "dT21", "err",
-                                            TemperatureReference::absolute);
+  const std::vector<Moments> batches =
+      read(folder + "/real/gooddash/", "run", 1, 5, "dT00", "dT21", "err", TemperatureReference::absolute);
   CHECK(left_out(batches, Method::mlr) == "1.33/1.85");
   CHECK(left_out(batches, Method::pls, 1) == "2.53/2.86");
   CHECK(left_out(batches, Method::pls, 2) == "1.68/2.70");

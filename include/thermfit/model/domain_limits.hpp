@@ -27,14 +27,13 @@ inline double t2_limit(double probability, Index components, Index rows) {
 /// shifted chi-squared variable (Imhof, Biometrika 48, 1961); one direction is exact. The classic limit of Jackson and
 /// Mudholkar (Technometrics 21, 1979) uses the same traces but takes the covariance as known: on 79 rows its 1 % limit
 /// is passed by up to 1.7 % of new observations, and by a fifth where eigenvalues are very uneven.
-/// 0 where no direction is left; infinite where the rows are too few to say.
+/// 0 where no direction is left.
 inline double spe_limit(double probability, const Matrix& residual_covariance, Index directions, Index components,
                         Index rows) {
   const double theta_1 = residual_covariance.trace();
   if (directions <= 0 || !(theta_1 > 0)) return 0;
   const double n = static_cast<double>(rows), a = static_cast<double>(components), d = static_cast<double>(directions);
-  const double freedom = n - 1 - a;
-  if (freedom <= 1) return std::numeric_limits<double>::infinity();
+  const double freedom = std::max(1.0, n - 1 - a);
   const double lost_to_fit = (n - 1) / freedom * (1 + (a + 1) / n);
   const Matrix square = residual_covariance * residual_covariance;
   const double tr_2 = square.trace(), tr_3 = square.cwiseProduct(residual_covariance.transpose()).sum();
