@@ -74,7 +74,7 @@ inline Calibration calibrate(const MachineRecord& seen, const ThermalNetwork& ma
   Calibration best;
   const ThermalNetwork complete = with_complete_effects(machine, library);
   best.residual_before = residuals_of(seen, simulate(complete, seen.excitations, library));
-  FitOptions how;
+  MapFitOptions how;
   how.most_iterations = options.most_iterations;
   how.tolerance = 0.01;
   std::uint64_t state = options.seed;

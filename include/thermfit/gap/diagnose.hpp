@@ -59,8 +59,8 @@ inline std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
 
 /// Held-out residuals of the account that the *other* batches choose: picking the best account by the batches it is
 /// then judged on would flatter it.
-inline Residuals nested_residual(const std::vector<Explanation>& accounts, std::size_t batches) {
-  Residuals result(accounts.front().held.residual.size(), SeriesByBatch(batches));
+inline ChannelResiduals nested_residual(const std::vector<Explanation>& accounts, std::size_t batches) {
+  ChannelResiduals result(accounts.front().held.residual.size(), SeriesByBatch(batches));
   for (std::size_t b = 0; b < batches; ++b) {
     const Explanation* best = &accounts.front();
     double best_score = -INFINITY;

@@ -34,7 +34,8 @@ inline bool same_place(const ThermalNetwork::AddedEffect& a, const ThermalNetwor
 /// Fits the machine with `effects` from where the screening left them. `start` holds the working coordinates of the
 /// machine and of all effects but those at the end that have none yet.
 inline Explanation explained_by(const Inquiry& inquiry, const std::vector<ThermalNetwork::AddedEffect>& effects,
-                                const Vector& start, const std::vector<ResidualNoise>& noise, FitOptions options = {}) {
+                                const Vector& start, const std::vector<ResidualNoise>& noise,
+                                MapFitOptions options = {}) {
   ThermalNetwork network = inquiry.machine;
   network.effects.insert(network.effects.end(), effects.begin(), effects.end());
   network = with_complete_effects(std::move(network), inquiry.library);
@@ -76,7 +77,7 @@ inline std::vector<Screened> finalists(const std::vector<Screened>& screened, st
 /// Refits every one of `chosen` on top of `kept` effects.
 inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector<Screened>& chosen,
                                        const std::vector<ThermalNetwork::AddedEffect>& kept,
-                                       const std::vector<ResidualNoise>& noise, const FitOptions& options) {
+                                       const std::vector<ResidualNoise>& noise, const MapFitOptions& options) {
   std::vector<Explanation> result(chosen.size());
   in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
     std::vector<ThermalNetwork::AddedEffect> effects = kept;
@@ -87,7 +88,7 @@ inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector
 }
 
 /// Mean square of each channel in units of what is expected of a right machine: noise and lumping tolerance.
-inline Vector misfit_of(const MachineRecord& seen, const Residuals& residual) {
+inline Vector misfit_of(const MachineRecord& seen, const ChannelResiduals& residual) {
   Vector result = Vector::Zero(static_cast<Index>(seen.channels.size()));
   for (std::size_t c = 0; c < residual.size(); ++c) {
     const ObservedChannel& channel = seen.channels[c];

@@ -22,13 +22,13 @@ inline Folds folds_of(std::size_t batches, std::size_t most_folds = 12) {
 
 /// What a model leaves on batches that did not take part in fitting it.
 struct HeldOut {
-  Residuals residual;
+  ChannelResiduals residual;
   std::vector<ResidualNoise> noise;  ///< of this residual
   double log_score = 0;              ///< log predictive density of all channels
   Vector by_batch;                   ///< the same by batch
 };
 
-inline HeldOut scored(const MachineRecord& seen, Residuals residual, const std::vector<ResidualNoise>& start) {
+inline HeldOut scored(const MachineRecord& seen, ChannelResiduals residual, const std::vector<ResidualNoise>& start) {
   HeldOut result;
   result.noise = noise_of(seen, residual, start);
   result.by_batch = Vector::Zero(static_cast<Index>(seen.batches()));
@@ -82,10 +82,11 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
 }
 
 /// Residuals of every batch from a fit that has not seen it.
-inline HeldOut held_out(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library, const Folds& folds) {
+inline HeldOut held_out(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library,
+                        const Folds& folds) {
   if (folds.empty()) return scored(seen, fit.residual, fit.noise);
   const auto whiteners = whiteners_of(seen, fit.noise);
-  Residuals residual(seen.channels.size(), SeriesByBatch(seen.batches()));
+  ChannelResiduals residual(seen.channels.size(), SeriesByBatch(seen.batches()));
   for (const std::vector<std::size_t>& left_out : folds) {
     const Vector t = coordinates_without(seen, fit, library, left_out, whiteners);
     std::vector<Excitation> unseen;

@@ -25,8 +25,8 @@ struct Investigation {
   MachineRecord seen;
   ThermalNetwork machine;  ///< as given, with placements
   Folds folds;
-  Residuals as_given;  ///< of the machine as given, sensors where it says they are
-  MapFit placed;       ///< only the sensors moved: what the machine as given leaves once they sit where they sit
+  ChannelResiduals as_given;  ///< of the machine as given, sensors where it says they are
+  MapFit placed;              ///< only the sensors moved: what the machine as given leaves once they sit where they sit
   Explanation calibrated;
   std::vector<Screened> screened;    ///< all candidates, strongest first
   std::vector<Explanation> single;   ///< refitted candidates, best held-out score first
@@ -89,13 +89,13 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   ThermalNetwork::Uncertainty& sd = sensors_only.uncertainty;
   sd.capacity = sd.ambient = sd.conductance = sd.power = sd.um_per_K = 0;
   sensors_only.effects.clear();
-  FitOptions coarse;
+  MapFitOptions coarse;
   coarse.tolerance = 1;
   if (result.machine.effects.empty()) result.placed = map_fit(result.seen, sensors_only, library, coarse);
   result.calibrated = explained_by(inquiry, {}, {}, {}, coarse);
 
   say("screening " + std::to_string(candidates.size()) + " candidates", 0.1);
-  FitOptions refit;
+  MapFitOptions refit;
   refit.tolerance = options.tolerance;
   refit.most_iterations = options.most_iterations;
   {

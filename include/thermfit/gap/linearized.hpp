@@ -13,10 +13,10 @@
 namespace thermfit {
 
 /// Measured minus simulated, by channel and batch; NaN where nothing was measured.
-using Residuals = std::vector<SeriesByBatch>;
+using ChannelResiduals = std::vector<SeriesByBatch>;
 
-inline Residuals residuals_of(const MachineRecord& seen, const std::vector<Simulation>& simulated) {
-  Residuals result(seen.channels.size());
+inline ChannelResiduals residuals_of(const MachineRecord& seen, const std::vector<Simulation>& simulated) {
+  ChannelResiduals result(seen.channels.size());
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
     for (std::size_t b = 0; b < simulated.size(); ++b)
       result[c].push_back(seen.channels[c].measured[b] - simulated[b].channels.col(seen.channels[c].column));

@@ -18,7 +18,7 @@ struct MapFit {
   Vector t;                           ///< working coordinates: prior standard deviations from the prior's mean
   std::vector<ResidualNoise> noise;   ///< by channel
   std::vector<Simulation> simulated;  ///< without sensitivities
-  Residuals residual;
+  ChannelResiduals residual;
   SummedEquations equations;
   double log_likelihood = 0;
   double log_posterior = 0;  ///< log_likelihood - t't/2
@@ -54,7 +54,7 @@ struct MapFit {
   }
 };
 
-struct FitOptions {
+struct MapFitOptions {
   int most_iterations = 30;
   double tolerance = 0.3;            ///< nats of log posterior an iteration must gain to go on
   std::vector<ResidualNoise> noise;  ///< to start from; empty: from the residual at the start
@@ -121,7 +121,7 @@ inline Vector step_in_box(const Matrix& information, const Vector& gradient, con
   return step;
 }
 
-inline double whitened_squares(const Residuals& residual, const std::vector<std::vector<Whitener>>& whiteners) {
+inline double whitened_squares(const ChannelResiduals& residual, const std::vector<std::vector<Whitener>>& whiteners) {
   double sum = 0;
   for (std::size_t c = 0; c < residual.size(); ++c)
     for (std::size_t b = 0; b < residual[c].size(); ++b) {
@@ -142,7 +142,7 @@ inline bool all_finite(const MachineRecord& seen, const std::vector<Simulation>&
 }  // namespace detail
 
 /// Noise of every channel from its residual, within the channel's bounds.
-inline std::vector<ResidualNoise> noise_of(const MachineRecord& seen, const Residuals& residual,
+inline std::vector<ResidualNoise> noise_of(const MachineRecord& seen, const ChannelResiduals& residual,
                                            const std::vector<ResidualNoise>& start = {}) {
   std::vector<ResidualNoise> result;
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
@@ -151,7 +151,7 @@ inline std::vector<ResidualNoise> noise_of(const MachineRecord& seen, const Resi
   return result;
 }
 
-inline double log_likelihood(const MachineRecord& seen, const Residuals& residual,
+inline double log_likelihood(const MachineRecord& seen, const ChannelResiduals& residual,
                              const std::vector<ResidualNoise>& noise) {
   double sum = 0;
   for (std::size_t c = 0; c < residual.size(); ++c) sum += log_likelihood(noise[c], residual[c], seen.time_s);
@@ -164,7 +164,7 @@ inline double log_likelihood(const MachineRecord& seen, const Residuals& residua
 /// weights are those of a concentrated likelihood. Damping is in units of the prior. `machine` holds the means of the
 /// priors.
 inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, const EffectLibrary& library,
-                      const FitOptions& options = {}) {
+                      const MapFitOptions& options = {}) {
   MapFit fit;
   fit.prior = with_complete_effects(machine, library);
   fit.parameters = calibration_parameters(fit.prior, library);
@@ -198,7 +198,7 @@ inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, 
       const Vector t = fit.t + step;
       std::vector<Simulation> trial = simulated_at(t);
       if (detail::all_finite(seen, trial)) {
-        Residuals residual = residuals_of(seen, trial);
+        ChannelResiduals residual = residuals_of(seen, trial);
         if (detail::whitened_squares(residual, whiteners) + t.squaredNorm() < cost) {
           fit.t = t;
           fit.simulated = std::move(trial);

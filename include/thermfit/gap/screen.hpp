@@ -219,7 +219,7 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
   }
   if (size == 0) return result;
 
-  Residuals predicted(channels);
+  ChannelResiduals predicted(channels);
   const Vector slopes = fit.slopes();
   for (std::size_t c = 0; c < channels; ++c)
     for (std::size_t b = 0; b < with.size(); ++b) {

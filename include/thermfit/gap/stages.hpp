@@ -12,7 +12,7 @@ namespace thermfit {
 
 /// Residuals of the four stages: as simulated, calibrated, with effect (all held out), and the noise of each channel.
 struct StageResiduals {
-  Residuals as_simulated, calibrated, with_effect;
+  ChannelResiduals as_simulated, calibrated, with_effect;
   Vector noise;  ///< by channel
 };
 
@@ -34,7 +34,7 @@ inline SeriesByBatch repeat_differences(const MachineRecord& seen, std::size_t c
 }
 
 /// The noise of each channel: from repeats, else from the high-frequency part of what the best account leaves.
-inline Vector noise_floor(const MachineRecord& seen, const Residuals& best) {
+inline Vector noise_floor(const MachineRecord& seen, const ChannelResiduals& best) {
   Vector result(static_cast<Index>(seen.channels.size()));
   for (std::size_t c = 0; c < seen.channels.size(); ++c) {
     const SeriesByBatch repeats = repeat_differences(seen, c);
@@ -48,7 +48,7 @@ inline Vector noise_floor(const MachineRecord& seen, const Residuals& best) {
 }
 
 /// Squares by batch of the channels of one kind: `displacement`, or all temperatures together.
-inline BatchSquares squares_of(const MachineRecord& seen, const Residuals& residual,
+inline BatchSquares squares_of(const MachineRecord& seen, const ChannelResiduals& residual,
                                const std::vector<std::size_t>& of) {
   BatchSquares result{Vector::Zero(static_cast<Index>(seen.batches())),
                       Vector::Zero(static_cast<Index>(seen.batches()))};
