@@ -74,15 +74,29 @@ inline std::vector<Screened> finalists(const std::vector<Screened>& screened, st
   return result;
 }
 
-/// Refits every one of `chosen` on top of `kept` effects.
+/// Refits every one of `chosen` on top of `kept` effects: a few steps for all, then to the end for those within sight
+/// of the leader.
 inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector<Screened>& chosen,
-                                       const std::vector<ThermalNetwork::AddedEffect>& kept,
-                                       const std::vector<ResidualNoise>& noise, const MapFitOptions& options) {
+                                       const std::vector<ThermalNetwork::AddedEffect>& kept, const MapFit& base,
+                                       const MapFitOptions& options, std::size_t to_the_end = 5) {
   std::vector<Explanation> result(chosen.size());
+  MapFitOptions brief = options;
+  brief.most_iterations = 3;
   in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
     std::vector<ThermalNetwork::AddedEffect> effects = kept;
     effects.push_back(chosen[i].added);
-    result[i] = explained_by(inquiry, effects, chosen[i].start, noise, options);
+    result[i] = explained_by(inquiry, effects, chosen[i].start, base.noise, brief);
+  });
+  std::vector<double> reached;
+  for (const Explanation& one : result) reached.push_back(one.fit.log_posterior);
+  std::sort(reached.rbegin(), reached.rend());
+  if (reached.empty()) return result;
+  const double within = reached[std::min(to_the_end, reached.size()) - 1];
+  in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
+    if (result[i].fit.converged || result[i].fit.log_posterior < within) return;
+    const Vector start = result[i].fit.t;
+    const std::vector<ResidualNoise> noise = result[i].fit.noise;
+    result[i] = explained_by(inquiry, result[i].effects, start, noise, options);
   });
   return result;
 }

@@ -12,7 +12,8 @@ namespace thermfit {
 
 /// How hard to look.
 struct SearchOptions {
-  std::size_t strongest = 10;  ///< candidates that get the full refit, before one of each family is added
+  std::size_t strongest = 7;  ///< candidates that get the full refit, before one of each family is added
+  std::size_t restarted = 4;  ///< of them get a second start where the best leaves much
   std::size_t most_effects = 2;
   unsigned threads = 0;    ///< 0: all cores
   double tolerance = 1.5;  ///< nats at which a refit of a candidate stops
@@ -90,7 +91,8 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   sd.capacity = sd.ambient = sd.conductance = sd.power = sd.um_per_K = 0;
   sensors_only.effects.clear();
   MapFitOptions coarse;
-  coarse.tolerance = 1;
+  coarse.tolerance = 1.5;
+  coarse.most_iterations = 25;
   if (result.machine.effects.empty()) result.placed = map_fit(result.seen, sensors_only, library, coarse);
   result.calibrated = explained_by(inquiry, {}, {}, {}, coarse);
 
@@ -102,24 +104,41 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
     const ScreeningBase base(result.seen, result.calibrated.fit, library);
     result.screened = screen(base, library, candidates, options.threads);
   }
-  const std::vector<Screened> chosen = finalists(result.screened, options.strongest, 3, 0.03);
+  const std::vector<Screened> chosen = finalists(result.screened, options.strongest, 5, 0.06);
   say("refitting " + std::to_string(chosen.size()) + " finalists", 0.35);
-  result.single = refits(inquiry, chosen, {}, result.calibrated.fit.noise, refit);
+  result.single = refits(inquiry, chosen, {}, result.calibrated.fit, refit);
   detail::best_first(result.single);
 
   if (!result.single.empty()) {
-    say("trying the places beside", 0.6);
-    std::vector<Screened> near;
-    const ThermalNetwork::AddedEffect& best = result.single[0].effects[0];
+    // Second starts, from the means of the priors: for the places beside the leader, where calibration may have settled
+    // in the wrong valley, and for the next best where the leader leaves much.
+    say("trying other starts and the places beside", 0.6);
+    const Explanation& leader = result.single.front();
+    const ThermalNetwork::AddedEffect& best = leader.effects[0];
+    const bool open = excess_of(misfit_of(result.seen, leader.held.residual)) > 1;
+    std::vector<ThermalNetwork::AddedEffect> again;
+    for (std::size_t i = 0; open && i < std::min(options.restarted, result.single.size()); ++i)
+      again.push_back(result.single[i].effects[0]);
     for (const Screened& one : result.screened) {
-      const bool tried = std::any_of(result.single.begin(), result.single.end(),
-                                     [&](const Explanation& other) { return same_place(other.effects[0], one.added); });
-      if (!tried && one.added.effect == best.effect && one.added.driver == best.driver && one.start.size() > 0 &&
-          detail::beside(result.machine, best.location, one.added.location))
-        near.push_back(one);
+      if (one.added.effect != best.effect || one.added.driver != best.driver ||
+          !detail::beside(result.machine, best.location, one.added.location))
+        continue;
+      ThermalNetwork::AddedEffect near = one.added;
+      near.parameters = best.parameters;
+      again.push_back(std::move(near));
     }
-    for (Explanation& one : refits(inquiry, near, {}, result.calibrated.fit.noise, refit))
-      result.single.push_back(std::move(one));
+    std::vector<Explanation> tried(again.size());
+    in_parallel(again.size(), options.threads,
+                [&](std::size_t i) { tried[i] = explained_by(inquiry, {again[i]}, {}, {}, refit); });
+    for (Explanation& one : tried) {
+      const auto known = std::find_if(result.single.begin(), result.single.end(), [&](const Explanation& other) {
+        return same_place(other.effects[0], one.effects[0]);
+      });
+      if (known == result.single.end())
+        result.single.push_back(std::move(one));
+      else if (one.fit.log_posterior > known->fit.log_posterior)
+        *known = std::move(one);
+    }
     detail::best_first(result.single);
   }
 
@@ -130,11 +149,11 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
     const auto add_to = [&](const Explanation& first, std::size_t strongest) {
       const ScreeningBase base(result.seen, first.fit, library);
       std::vector<ThermalNetwork::AddedEffect> others;
-      for (const auto& one : candidates)
-        if (!same_place(one, first.effects[0])) others.push_back(one);
+      for (const Screened& one : result.screened)
+        if (!same_place(one.added, first.effects[0])) others.push_back(one.added);
       std::vector<Screened> screened = screen(base, library, others, options.threads);
       std::vector<Explanation> pairs =
-          refits(inquiry, finalists(screened, strongest, 3, 0.3), first.effects, first.fit.noise, refit);
+          refits(inquiry, finalists(screened, strongest, 3, 0.3), first.effects, first.fit, refit, 3);
       for (Explanation& pair : pairs) result.several.push_back(std::move(pair));
       detail::best_first(result.several);
     };

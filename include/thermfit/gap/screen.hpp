@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -134,13 +135,20 @@ inline SizeRange size_range(const std::vector<EffectParameter>& parameters, cons
   return range;
 }
 
+inline double whitened_count(const ScreeningBase& base, std::size_t channel) {
+  Index count = 0;
+  for (const Whitener& one : base.whiteners()[channel]) count += one.count();
+  return static_cast<double>(count);
+}
+
 }  // namespace detail
 
 /// What adding `begun` to the calibrated machine promises when calibration moves along, to first order: its signature
 /// is one simulation; calibration is projected out of it through the normal equations; channels are reweighted as their
-/// residual shrinks. The gain is that of the predicted residual under noise estimated anew.
+/// residual shrinks. The gain is that of the predicted residual under noise estimated anew, or without that, of its
+/// whitened squares: cheaper, and enough to tell what is worth more.
 inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& library,
-                           const ThermalNetwork::AddedEffect& begun) {
+                           const ThermalNetwork::AddedEffect& begun, bool with_noise = true) {
   const MapFit& fit = base.fit();
   const MachineRecord& seen = base.seen();
   Screened result;
@@ -218,6 +226,18 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
     }
   }
   if (size == 0) return result;
+  result.start = fit.t + move;
+  const double shift = size - range.prior_mean;
+  const double prior = -0.5 * result.start.squaredNorm() - 0.5 * shift * shift * range.prior_information;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (detail::carries_size(parameters[k]))
+      result.added.parameters[k].second = detail::value_at_size(parameters[k], begun.parameters[k].second, size);
+  if (!with_noise) {
+    result.gain = prior + 0.5 * fit.t.squaredNorm();
+    for (std::size_t c = 0; c < channels; ++c)
+      result.gain += 0.5 * detail::whitened_count(base, c) * std::log(weights(static_cast<Index>(c)));
+    return result;
+  }
 
   ChannelResiduals predicted(channels);
   const Vector slopes = fit.slopes();
@@ -227,20 +247,15 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
       predicted[c].push_back(fit.residual[c][b] - size * signature[c][b] -
                              base.simulated()[b].jacobian.middleRows(first, rows) * slopes.cwiseProduct(move));
     }
-  result.start = fit.t + move;
-  const double shift = size - range.prior_mean;
-  result.gain = log_likelihood(seen, predicted, noise_of(seen, predicted, fit.noise)) -
-                0.5 * result.start.squaredNorm() - 0.5 * shift * shift * range.prior_information - fit.log_posterior;
-  for (std::size_t k = 0; k < parameters.size(); ++k)
-    if (detail::carries_size(parameters[k]))
-      result.added.parameters[k].second = detail::value_at_size(parameters[k], begun.parameters[k].second, size);
+  result.gain = log_likelihood(seen, predicted, noise_of(seen, predicted, fit.noise)) + prior - fit.log_posterior;
   return result;
 }
 
 /// All candidates from every beginning, the best beginning of each place kept; strongest first, ties in catalogue
-/// order.
+/// order. All are tried cheaply; the `closer` best, and the best two of every effect, are looked at closely.
 inline std::vector<Screened> screen(const ScreeningBase& base, const EffectLibrary& library,
-                                    const std::vector<ThermalNetwork::AddedEffect>& candidates, unsigned threads) {
+                                    const std::vector<ThermalNetwork::AddedEffect>& candidates, unsigned threads,
+                                    std::size_t closer = 80) {
   std::vector<ThermalNetwork::AddedEffect> begun;
   std::vector<std::size_t> owner;
   for (std::size_t i = 0; i < candidates.size(); ++i)
@@ -249,7 +264,20 @@ inline std::vector<Screened> screen(const ScreeningBase& base, const EffectLibra
       owner.push_back(i);
     }
   std::vector<Screened> tried(begun.size());
-  in_parallel(begun.size(), threads, [&](std::size_t i) { tried[i] = screen_one(base, library, begun[i]); });
+  in_parallel(begun.size(), threads, [&](std::size_t i) { tried[i] = screen_one(base, library, begun[i], false); });
+  std::vector<std::size_t> order(begun.size()), close;
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return tried[a].gain > tried[b].gain; });
+  std::map<std::string, int> of_effect;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    if (tried[order[k]].start.size() > 0 && (k < closer || of_effect[begun[order[k]].effect] < 2)) {
+      ++of_effect[begun[order[k]].effect];
+      close.push_back(order[k]);
+    }
+  for (Screened& one : tried) one.gain = -std::numeric_limits<double>::infinity();
+  in_parallel(close.size(), threads,
+              [&](std::size_t k) { tried[close[k]] = screen_one(base, library, begun[close[k]]); });
   std::vector<Screened> best(candidates.size());
   for (std::size_t i = 0; i < tried.size(); ++i)
     if (best[owner[i]].added.effect.empty() || tried[i].gain > best[owner[i]].gain)
