@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "thermfit/model/quantiles.hpp"
 #include "thermfit/types.hpp"
@@ -26,7 +27,7 @@ inline double t2_limit(double probability, Index components, Index rows) {
 /// Its first three cumulants, with the sampling bias of tr(S^2) and tr(S^3) taken out (Wishart moments), give a
 /// shifted chi-squared variable (Imhof, Biometrika 48, 1961); one direction is exact. The classic limit of Jackson and
 /// Mudholkar (Technometrics 21, 1979) uses the same traces but takes the covariance as known: on 79 rows its 1 % limit
-/// is passed by up to 1.7 % of new observations, and by a fifth where eigenvalues are very uneven.
+/// is passed by up to 2 % of new observations, and by a fifth of them where eigenvalues are very uneven.
 /// 0 where no direction is left.
 inline double spe_limit(double probability, const Matrix& residual_covariance, Index directions, Index components,
                         Index rows) {
