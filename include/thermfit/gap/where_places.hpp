@@ -56,7 +56,11 @@ class PlaceSearch {
   static constexpr Index pieces = 6;
 
   PlaceSearch(const Observations& seen, const MapFit& fit, const EffectLibrary& library)
-      : seen_(seen), fit_(fit), whiteners_(whiteners_of(seen, expected_noise(seen, fit))), machine_(fit.network()), library_(library) {}
+      : seen_(seen),
+        fit_(fit),
+        whiteners_(whiteners_of(seen, expected_noise(seen, fit))),
+        machine_(fit.network()),
+        library_(library) {}
 
   /// Places in the order in which they are picked, then the others by what they add alone.
   std::vector<DisturbedPlace> run() {
