@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "thermfit/gap/diagnosis.hpp"
-#include "thermfit/gap/linearized.hpp"
+#include "thermfit/gap/map_fit.hpp"
 #include "thermfit/gap/schedules.hpp"
 
 namespace thermfit {
@@ -34,7 +34,7 @@ inline double normal_quantile(double p) {
 
 /// Distance between two machines on a schedule in standard deviations, after calibration has moved as far as prior and
 /// the data so far let it: d = y_a - y_b whitened, D^2 = d'd - d'J (J'J + H)^-1 J'd.
-inline double distance(const FittedRival& a, const FittedRival& b, const Schedule& schedule, const Observations& seen,
+inline double distance(const FittedRival& a, const FittedRival& b, const Schedule& schedule, const MachineRecord& seen,
                        const MapFit& calibrated, const std::vector<ResidualNoise>& noise, const Matrix& information,
                        const EffectLibrary& library) {
   const std::vector<Excitation> plan{schedule.excitation};
@@ -68,7 +68,7 @@ inline double distance(const FittedRival& a, const FittedRival& b, const Schedul
 /// The distance reached so far follows from their probabilities, and squares of distances add. The schedule with the
 /// largest D^2 per hour is taken, as often (up to four times) as it takes to get below 5 %. `noise` is what the best
 /// explanation leaves in each channel.
-inline NextExperiment next_experiment(const std::vector<FittedRival>& rivals, const Observations& seen,
+inline NextExperiment next_experiment(const std::vector<FittedRival>& rivals, const MachineRecord& seen,
                                       const MapFit& calibrated, const std::vector<ResidualNoise>& noise,
                                       const EffectLibrary& library) {
   NextExperiment result;

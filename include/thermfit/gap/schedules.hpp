@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/gap/observations.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit {
 
@@ -24,7 +25,7 @@ namespace detail {
 /// Schedules for one machine: inputs by the range in which the campaign used them, durations in units of its batches.
 class Menu {
  public:
-  Menu(const ThermalNetwork& network, const Observations& seen) : network_(network), seen_(seen) {
+  Menu(const ThermalNetwork& network, const MachineRecord& seen) : network_(network), seen_(seen) {
     const Excitation& first = seen.excitations[0];
     largest_.assign(first.input_names.size(), 0);
     varies_.assign(first.input_names.size(), false);
@@ -119,7 +120,7 @@ class Menu {
   }
 
   const ThermalNetwork& network_;
-  const Observations& seen_;
+  const MachineRecord& seen_;
   std::vector<double> largest_;
   std::vector<bool> varies_;
   double span_s_ = 0, room_degC_ = 20;
@@ -130,7 +131,7 @@ class Menu {
 
 /// Speed stair, single high speed, cool-down, the other inputs alone or toggled, idle day, repeat; those that the
 /// campaign's inputs allow. Needs one batch at least.
-inline std::vector<Schedule> experiment_menu(const ThermalNetwork& network, const Observations& seen) {
+inline std::vector<Schedule> experiment_menu(const ThermalNetwork& network, const MachineRecord& seen) {
   return detail::Menu(network, seen).all();
 }
 

@@ -55,7 +55,7 @@ class PlaceSearch {
  public:
   static constexpr Index pieces = 6;
 
-  PlaceSearch(const Observations& seen, const MapFit& fit, const EffectLibrary& library)
+  PlaceSearch(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library)
       : seen_(seen),
         fit_(fit),
         whiteners_(whiteners_of(seen, expected_noise(seen, fit))),
@@ -100,7 +100,7 @@ class PlaceSearch {
 
   /// The noise a right machine would leave. The fitted one may not serve: where calibration fails, its slow part has
   /// swallowed the very disturbance that is looked for.
-  static std::vector<ResidualNoise> expected_noise(const Observations& seen, const MapFit& fit) {
+  static std::vector<ResidualNoise> expected_noise(const MachineRecord& seen, const MapFit& fit) {
     std::vector<ResidualNoise> noise = fit.noise;
     for (std::size_t c = 0; c < noise.size(); ++c)
       noise[c].slow = std::min(noise[c].slow, 2 * seen.channels[c].bounds.least_slow);
@@ -278,7 +278,7 @@ class PlaceSearch {
     traces_.push_back(std::move(clock));
   }
 
-  const Observations& seen_;
+  const MachineRecord& seen_;
   const MapFit& fit_;
   std::vector<std::vector<Whitener>> whiteners_;
   ThermalNetwork machine_;
@@ -298,7 +298,7 @@ class PlaceSearch {
 /// together with all calibration parameters: the batch form of an unknown-input smoother with diffusion by maximum
 /// likelihood. The best is kept and the others judged anew beside it, up to three. Under no deficiency a place gains
 /// rarely more than 3 nats (half chi-square mixture on the boundary); 5 are asked for.
-inline std::vector<DisturbedPlace> disturbed_places(const Observations& seen, const MapFit& calibrated,
+inline std::vector<DisturbedPlace> disturbed_places(const MachineRecord& seen, const MapFit& calibrated,
                                                     const EffectLibrary& library) {
   return detail::PlaceSearch(seen, calibrated, library).run();
 }
