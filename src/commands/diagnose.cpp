@@ -4,8 +4,11 @@
 #include "commands/commands.hpp"
 #include "report/diagnosis_report.hpp"
 #include "thermfit/effects/catalogue.hpp"
+#include "thermfit/gap/elaborate.hpp"
 #include "thermfit/gap/paired.hpp"
+#include "thermfit/io/atomic_file.hpp"
 #include "thermfit/io/diagnosis_json.hpp"
+#include "thermfit/io/machine_json.hpp"
 
 namespace thermfit::cli {
 namespace {
@@ -13,6 +16,7 @@ namespace {
 const char* const details =
     R"(Says where the gap between a simulator and the machine lies, which unmodelled effect causes it, and how far it shrinks once the effect is added: judged on batches not used for fitting.
 
+With a machine file, the simulator is the lumped network that it describes: every effect of the catalogue is added at every place and refitted together with the calibration. --write saves the machine with the effect added; `thermfit simulate` then runs it.
 With --sim, the simulator is anybody's: only its output is read, one file a batch with the same names as the measured ones. Effects then act through the traces they leave in the outputs.
 
 The report gives one sentence first, then what was ruled out and why, what could not be told apart, the next experiment, data problems, and tables.
@@ -24,6 +28,7 @@ std::vector<Option> options() {
       {"--sim", "PATH", "output of your own simulator: batches with the names of the measured ones", 0, true},
       {"--effects", "NAME,…", "look for these effects only", 0, true},
       {"--without", "NAME,…", "leave these effects out of the catalogue", 0, true},
+      {"--write", "FILE", "save the calibrated machine with the effects found", 0, false},
       {"--ambient", "NAME", "with --sim: the temperature column of the room (default: recognised)", 0, false},
       {"--reference", "DEGC", "with --sim: reference temperature of expansion (default: 20)", 0, false},
       {"--seed", "N", "seed of resampling (default: 1)", 0, false},
@@ -48,6 +53,10 @@ std::vector<std::string> effect_names(const Arguments& arguments, const std::str
   return names;
 }
 
+unsigned seed_of(const Arguments& arguments) {
+  return static_cast<unsigned>(arguments.integer("--seed", 0, 2147483647).value_or(1));
+}
+
 unsigned thread_count(const Arguments& arguments) {
   return static_cast<unsigned>(arguments.integer("--threads", 1, 1024).value_or(0));
 }
@@ -58,7 +67,7 @@ Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
   options.reference_degC = arguments.number("--reference", -273.15, 2000).value_or(20);
   options.effects = effect_names(arguments, "--effects");
   options.without = effect_names(arguments, "--without");
-  options.seed = static_cast<unsigned>(arguments.integer("--seed", 0, 2147483647).value_or(1));
+  options.seed = seed_of(arguments);
   options.threads = thread_count(arguments);
   options.progress = [&console](const std::string& what) { console.progress(what); };
   const Campaign real = read_campaign(arguments, console, arguments.positionals());
@@ -66,10 +75,40 @@ Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
   return diagnose_paired(real, sim, options);
 }
 
+Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
+  const auto& words = arguments.positionals();
+  const bool first_is_machine =
+      !words.empty() && words[0].size() > 5 && words[0].compare(words[0].size() - 5, 5, ".json") == 0;
+  if (!first_is_machine || words.size() < 2)
+    throw UsageError("diagnose takes a machine file (*.json) and measured batches, or --sim and measured batches");
+  const EffectLibrary library = standard_effects();
+  const ThermalNetwork machine = read_machine(words[0], library);
+  DiagnoseOptions options;
+  options.effects = effect_names(arguments, "--effects");
+  options.without = effect_names(arguments, "--without");
+  options.seed = seed_of(arguments);
+  options.search.threads = thread_count(arguments);
+  options.search.progress = [&console](const std::string& step, double share) {
+    console.progress(step + " … " + fixed_text(100 * share, 0) + " %");
+  };
+  const Campaign real = read_campaign(arguments, console, {words.begin() + 1, words.end()});
+  require_time(real);
+  Diagnosed found = diagnose_fully(machine, real, library, options);
+  elaborate(found, machine, real, library, seed_of(arguments));
+  if (found.diagnosis.machine.empty()) found.diagnosis.machine = words[0];
+  if (const auto path = arguments.value("--write")) write_atomically(*path, machine_to_json(found.best).dump(1) + "\n");
+  return std::move(found.diagnosis);
+}
+
 Exit run_diagnose(const Arguments& arguments, Console& console) {
   if (const auto path = arguments.value("--output")) console.write_to(*path);
-  if (!arguments.has("--sim")) throw UsageError("diagnose needs --sim PATH");
-  const Diagnosis diagnosis = diagnose_outputs(arguments, console);
+  const bool paired = arguments.has("--sim");
+  if (paired && arguments.has("--write"))
+    throw UsageError("--write needs a machine file: with --sim there is no machine to save");
+  for (const char* option : {"--ambient", "--reference"})
+    if (!paired && arguments.has(option))
+      throw UsageError(std::string(option) + " goes with --sim; a machine file tells it itself");
+  const Diagnosis diagnosis = paired ? diagnose_outputs(arguments, console) : diagnose_machine(arguments, console);
   console.progress({});
   if (arguments.has("--json"))
     console.line(diagnosis_to_json(diagnosis).dump(1));
@@ -87,7 +126,9 @@ Command diagnose_command() {
           "machine.json BATCH.csv … | --sim SIM BATCH.csv …",
           details,
           options(),
-          {{"thermfit diagnose --sim data/withheld/case-05/sim data/withheld/case-05/real",
+          {{"thermfit diagnose data/withheld/case-05/machine.json data/withheld/case-05/real",
+            "the machine's own network: effects are added to it"},
+           {"thermfit diagnose --sim data/withheld/case-05/sim data/withheld/case-05/real",
             "any simulator: its output beside the measurement"}},
           run_diagnose};
 }

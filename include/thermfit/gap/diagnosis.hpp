@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "thermfit/network/thermal_network.hpp"
-
 namespace thermfit {
 
 enum class Verdict {
@@ -167,14 +165,6 @@ struct DataProblem {
   std::string place, what;
 };
 
-/// The fitted machines behind the words: for `--write`, and for the views, the transfer and the next experiment, which
-/// are computed from them. Without nodes in paired mode.
-struct DiagnosedMachines {
-  ThermalNetwork calibrated;           ///< all parameters moved, no effect added
-  ThermalNetwork with_effect;          ///< recalibrated together with `effects`
-  std::vector<ThermalNetwork> rivals;  ///< refitted with each of effects[0].alternatives, in their order
-};
-
 struct Diagnosis {
   std::string machine;
   std::vector<std::string> batches;
@@ -188,7 +178,6 @@ struct Diagnosis {
   std::vector<CalibrationMove> calibration;  ///< largest move first
   std::vector<DataProblem> data_problems;
   std::vector<std::string> weaker_claims;  ///< what these data do not allow to say, and why
-  DiagnosedMachines machines;
   std::string mode = "network";  ///< "network" or "paired"
 };
 
