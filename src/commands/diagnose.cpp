@@ -126,7 +126,8 @@ Command diagnose_command() {
           "machine.json BATCH.csv … | --sim SIM BATCH.csv …",
           details,
           options(),
-          {{"thermfit diagnose data/withheld/case-05/machine.json data/withheld/case-05/real",
+          {{"thermfit diagnose data/withheld/case-05/machine.json data/withheld/case-05/real --effects "
+            "speed-shift,hysteresis",
             "the machine's own network: effects are added to it"},
            {"thermfit diagnose --sim data/withheld/case-05/sim data/withheld/case-05/real",
             "any simulator: its output beside the measurement"}},

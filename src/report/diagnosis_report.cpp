@@ -277,7 +277,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   std::string text = wrap(sentence(diagnosis), width, 0);
   for (const FoundEffect& found : diagnosis.effects) {
     std::vector<std::string> parameters;
-    for (const Estimate& one : found.parameters) parameters.push_back(parameter_text(one));
+    for (const Estimate& one : found.parameters)
+      if (one.standard_error != 0) parameters.push_back(parameter_text(one));  // a chosen scale is no finding
     if (!parameters.empty()) text += wrap(found.effect + ": " + joined(parameters) + ".", width, 0);
   }
   const Remaining& remaining = diagnosis.remaining;
