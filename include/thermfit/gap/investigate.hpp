@@ -16,6 +16,7 @@ struct SearchOptions {
   std::size_t restarted = 4;  ///< of them get a second start where the best leaves much
   std::size_t most_effects = 2;
   unsigned threads = 0;    ///< 0: all cores
+  double far = 2;          ///< times what is expected: a channel beyond it asks for a second effect
   double tolerance = 1.5;  ///< nats at which a refit of a candidate stops
   int most_iterations = 14;
   std::function<void(const std::string& step, double share)> progress;
@@ -101,7 +102,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   refit.tolerance = options.tolerance;
   refit.most_iterations = options.most_iterations;
   {
-    const ScreeningBase base(result.seen, result.calibrated.fit, library);
+    const ScreeningBase base(result.seen, result.calibrated.fit, library, result.machine.effects.size());
     result.screened = screen(base, library, candidates, options.threads);
   }
   const std::vector<Screened> chosen = finalists(result.screened, options.strongest, 5, 0.06);
@@ -142,22 +143,28 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
     detail::best_first(result.single);
   }
 
-  // A second effect, where the best single one leaves more than can be expected of a right machine.
-  const double left = result.single.empty() ? 0 : excess_of(misfit_of(result.seen, result.single[0].held.residual));
-  if (options.most_effects > 1 && left > 1) {
+  // A second effect, where the best single one leaves some channel far from what can be expected. Where it leaves only
+  // little, a boundary or a start that differs from part to part of the machine may still be two places of one effect.
+  const Vector left = result.single.empty() ? Vector() : misfit_of(result.seen, result.single[0].held.residual);
+  if (options.most_effects > 1 && left.size() > 0 && excess_of(left) > 1) {
+    const std::string leading = result.single[0].effects[0].effect;
+    const Stage stage = library.at(leading).stage();
+    const bool far = left.maxCoeff() > options.far * options.far;
+    const bool spread = stage == Stage::boundary || stage == Stage::initial;
     say("looking for a second effect", 0.7);
     const auto add_to = [&](const Explanation& first, std::size_t strongest) {
-      const ScreeningBase base(result.seen, first.fit, library);
+      const ScreeningBase base(result.seen, first.fit, library, result.machine.effects.size());
       std::vector<ThermalNetwork::AddedEffect> others;
       for (const Screened& one : result.screened)
-        if (!same_place(one.added, first.effects[0])) others.push_back(one.added);
+        if (!same_place(one.added, first.effects[0]) && (far || one.added.effect == leading))
+          others.push_back(one.added);
       std::vector<Screened> screened = screen(base, library, others, options.threads);
       std::vector<Explanation> pairs =
           refits(inquiry, finalists(screened, strongest, 3, 0.3), first.effects, first.fit, refit, 3);
       for (Explanation& pair : pairs) result.several.push_back(std::move(pair));
       detail::best_first(result.several);
     };
-    add_to(result.single[0], 5);
+    if (far || spread) add_to(result.single[0], 5);
     if (!result.several.empty()) {
       // Swap: hold the second effect and look for the first anew.
       const ThermalNetwork::AddedEffect second = result.several[0].effects[1];

@@ -133,21 +133,28 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   const std::vector<double> weight = probabilities(accounts, options.score_power);
   if (known < 0.5) return result;
 
+  const std::vector<ThermalNetwork::AddedEffect>& leading = accounts.front().effects;
   if (!two) {
     result.effects = {
         detail::found_effect(inquiry, accounts, marginals(accounts, weight, "", options.listed), known, options)};
+  } else if (leading[0].effect == leading[1].effect && leading[0].driver == leading[1].driver) {
+    // One effect, stronger in one part of the machine than in another: its place is both parts.
+    FoundEffect one{
+        leading[0].effect, leading[0].location + "+" + leading[1].location, leading[0].driver, known, {}, {}, {}};
+    one.parameters = detail::estimates(inquiry, accounts.front(), 0);
+    result.effects = {std::move(one)};
   } else {
     // Each of the pair with what could take its part beside the other.
-    for (const auto& other : {accounts.front().effects[1], accounts.front().effects[0]}) {
-      std::vector<Explanation const*> with;
+    for (const auto& other : {leading[1], leading[0]}) {
       std::vector<double> share(accounts.size(), 0.0);
-      double sum = 0;
       for (std::size_t i = 0; i < accounts.size(); ++i)
         for (const auto& one : accounts[i].effects)
-          if (one.effect == other.effect && share[i] == 0) share[i] = weight[i], sum += weight[i];
+          if (one.effect == other.effect) share[i] = weight[i];
+      double sum = 0;
+      for (const double one : share) sum += one;
       for (double& one : share) one /= sum;
-      const std::vector<Marginal> ranked = marginals(accounts, share, other.effect, options.listed);
-      if (!ranked.empty()) result.effects.push_back(detail::found_effect(inquiry, accounts, ranked, known, options));
+      result.effects.push_back(detail::found_effect(
+          inquiry, accounts, marginals(accounts, share, other.effect, options.listed), known, options));
     }
   }
   result.best = &accounts.front();

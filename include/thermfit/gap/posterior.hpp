@@ -51,8 +51,8 @@ struct Marginal {
   std::vector<std::string> places;  ///< of the same effect, more than `listed` of the best place, best first
 };
 
-/// Sums the probabilities of accounts by effect (and driver), strongest first. Only effects that differ from
-/// `context` count: what a two-effect account says besides.
+/// Sums the probabilities of accounts by effect (and driver), strongest first. One effect named `besides` is left out
+/// of each account: what an account of two says about the other one.
 inline std::vector<Marginal> marginals(const std::vector<Explanation>& accounts, const std::vector<double>& weight,
                                        const std::string& besides, double listed) {
   struct Entry {
@@ -65,9 +65,9 @@ inline std::vector<Marginal> marginals(const std::vector<Explanation>& accounts,
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight[a] > weight[b]; });
   for (const std::size_t i : order)
-    for (std::size_t k = 0; k < accounts[i].effects.size(); ++k) {
+    for (std::size_t k = 0, left_out = 0; weight[i] > 0 && k < accounts[i].effects.size(); ++k) {
       const ThermalNetwork::AddedEffect& one = accounts[i].effects[k];
-      if (!besides.empty() && one.effect == besides) continue;
+      if (one.effect == besides && left_out++ == 0) continue;
       auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& known) {
         return known.effect == one.effect && known.driver == one.driver;
       });

@@ -24,18 +24,26 @@ struct Screened {
 /// What the screening of every candidate shares: the calibrated machine, linearised.
 class ScreeningBase {
  public:
-  ScreeningBase(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library)
+  /// `own_effects`: how many effects the machine brought along; those that the search added after them are left out of
+  /// the machine on which signatures are taken, which to first order changes nothing and is far cheaper.
+  ScreeningBase(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library, std::size_t own_effects)
       : seen_(seen),
         fit_(fit),
         simulated_(simulate(fit.network(), seen.excitations, library, fit.parameters)),
         whiteners_(whiteners_of(seen, fit.noise)),
         model_(linearized(seen, simulated_, fit.slopes(), whiteners_)),
         prior_(Matrix::Identity(fit.t.size(), fit.t.size())),
-        factor_(fit.total().information + prior_) {}
+        factor_(fit.total().information + prior_),
+        bare_(fit.network()) {
+    bare_.effects.resize(own_effects);
+    bare_simulated_ = simulate(bare_, seen.excitations, library);
+  }
 
   const MachineRecord& seen() const { return seen_; }
   const MapFit& fit() const { return fit_; }
   const std::vector<Simulation>& simulated() const { return simulated_; }  ///< with sensitivities
+  const ThermalNetwork& bare() const { return bare_; }                     ///< on which signatures are taken
+  const std::vector<Simulation>& bare_simulated() const { return bare_simulated_; }
   const std::vector<std::vector<Whitener>>& whiteners() const { return whiteners_; }
   const Linearized& model() const { return model_; }
 
@@ -63,6 +71,8 @@ class ScreeningBase {
   Linearized model_;
   Matrix prior_;
   Eigen::LLT<Matrix> factor_;
+  ThermalNetwork bare_;
+  std::vector<Simulation> bare_simulated_;
 };
 
 namespace detail {
@@ -153,7 +163,7 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
   const MachineRecord& seen = base.seen();
   Screened result;
   result.added = begun;
-  ThermalNetwork network = fit.network();
+  ThermalNetwork network = base.bare();
   const std::vector<EffectParameter> parameters = library.at(begun.effect).parameters(network, begun);
   const detail::SizeRange range = detail::size_range(parameters, begun);
   // The placement of a sensor imitates a fault of it, and would then hide it: its signature is that at no placement.
@@ -164,7 +174,7 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
     for (auto& share : faulty->placement) share.second = 0;
     moved = simulate(network, seen.excitations, library);
   }
-  const std::vector<Simulation>& without = moved.empty() ? base.simulated() : moved;
+  const std::vector<Simulation>& without = moved.empty() ? base.bare_simulated() : moved;
   network.effects.push_back(begun);
   const std::vector<Simulation> with = simulate(network, seen.excitations, library);
   if (!detail::all_finite(seen, with)) return result;
