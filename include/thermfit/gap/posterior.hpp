@@ -9,8 +9,8 @@
 
 namespace thermfit {
 
-/// The few numbers between scores and probabilities. They were set on generated campaigns (tests/blind), never on the
-/// withheld ones.
+/// The few numbers between scores and probabilities. They were set by hand on development cases, among them some of
+/// data/withheld, and are not calibrated yet: read a confidence as an order, not as a frequency.
 struct JudgingOptions {
   /// Log scores count by this power: lumping errors repeat from batch to batch, so nats of held-out score are not worth
   /// what they would be if the model were exact (a coarsened likelihood).
