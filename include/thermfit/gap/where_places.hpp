@@ -235,6 +235,7 @@ class PlaceSearch {
     traces_.push_back(std::move(ambient));
   }
 
+  /// Readings that are off by a broken line with a corner between any two of the pieces.
   void add_readings() {
     for (std::size_t own = 0; own < seen_.channels.size(); ++own) {
       const bool displacement = seen_.channels[own].displacement;
@@ -245,7 +246,12 @@ class PlaceSearch {
         one.by_batch.push_back(stacked(b, pieces, [&](std::size_t c) -> Matrix {
           Matrix piece = Matrix::Zero(samples, pieces);
           if (c == own)
-            for (Index k = 0; k < samples; ++k) piece(k, k * pieces / samples) = 1;
+            for (Index k = 0; k < samples; ++k) {  // a broken line: readings wander, they do not jump
+              const double at = static_cast<double>(k * (pieces - 1)) / static_cast<double>(samples - 1);
+              const Index corner = std::min(static_cast<Index>(at), pieces - 2);
+              piece(k, corner + 1) = at - static_cast<double>(corner);
+              piece(k, corner) = 1 - piece(k, corner + 1);
+            }
           return piece;
         }));
       }
@@ -294,7 +300,8 @@ class PlaceSearch {
 
 /// Effect-free places of a calibrated machine, picked ones first.
 ///
-/// Each place gets a course of unknown disturbance (six pieces a batch, independent, of one variance), integrated out
+/// Each place gets a course of unknown disturbance (heat: six pieces a batch; readings: a broken
+/// line of six corners; independent, of one variance), integrated out
 /// together with all calibration parameters: the batch form of an unknown-input smoother with diffusion by maximum
 /// likelihood. The best is kept and the others judged anew beside it, up to three. Under no deficiency a place gains
 /// rarely more than 3 nats (half chi-square mixture on the boundary); 5 are asked for.
