@@ -14,7 +14,7 @@ constexpr std::size_t width = 80;
 /// What each effect means for a reader who does not know its name.
 std::string meaning(const std::string& effect) {
   static const std::vector<std::pair<std::string, std::string>> meanings{
-      {"heat-source", "heat that the simulator lacks"},
+      {"heat-source", "heat arises that the simulator lacks"},
       {"friction-law", "a heat source grows with another power of its input"},
       {"coolant", "a coolant takes heat away"},
       {"ambient-drift", "the room does not stay at its first temperature"},
@@ -47,7 +47,7 @@ std::string confidence_text(double confidence) {
   return confidence > .99 ? "above 99 %" : confidence < .01 ? "below 1 %" : percent(confidence);
 }
 
-std::string size_text(double rms) { return fixed_text(rms, std::abs(rms) < 10 ? 2 : 1); }
+std::string size_text(double rms) { return std::isnan(rms) ? "-" : fixed_text(rms, std::abs(rms) < 10 ? 2 : 1); }
 
 std::string title_of(const std::string& effect, const std::string& location, const std::string& driver) {
   std::string text = effect;
@@ -68,15 +68,32 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bet
   return text;
 }
 
-/// "Z goes from 2.70 to 0.33 um rms on batches not used for fitting: it shrinks by 88 % (95 % interval 83 to 91 %)."
+std::string named_output(const Gap& gap) { return gap.output == "temperatures" ? "all temperatures" : gap.output; }
+
+/// "the gap in Z goes from 2.70 to 0.33 um rms on batches not used for fitting, a shrink of 88 % (95 % interval 83 to
+/// 91
+/// %); the noise is 0.27 um."
 std::string shrink_text(const Gap& gap) {
   const std::string unit = ' ' + gap.unit;
-  return gap.output + " goes from " + size_text(gap.rms.calibrated) + " to " + size_text(gap.rms.with_effect) + unit +
-         " rms" +
-         (gap.held_out ? " on batches not used for fitting" : " (fit itself: too few batches to hold some back)") +
-         ": it shrinks by " + fixed_text(gap.shrink_percent, 0) + " % (95 % interval " +
-         fixed_text(gap.shrink_ci95_percent.low, 0) + " to " + fixed_text(gap.shrink_ci95_percent.high, 0) +
-         " %); noise is " + size_text(gap.rms.noise) + unit + ".";
+  return "the gap in " + named_output(gap) + " goes from " + size_text(gap.rms.calibrated) + " to " +
+         size_text(gap.rms.with_effect) + unit + " rms" +
+         (gap.held_out ? " on batches not used for fitting, a shrink of " + fixed_text(gap.shrink_percent, 0) +
+                             " % (95 % interval " + fixed_text(gap.shrink_ci95_percent.low, 0) + " to " +
+                             fixed_text(gap.shrink_ci95_percent.high, 0) + " %)"
+                       : " on the one batch it was fitted to, which proves nothing") +
+         "; the noise is " + size_text(gap.rms.noise) + unit + ".";
+}
+
+/// A fault of a thermometer shows in its own reading, whatever the gap is told for: " T7 itself goes from 1.31 to 0.06
+/// K." An offset counts from the machine as given, since calibration moves offsets too.
+std::string own_reading(const Diagnosis& diagnosis) {
+  const FoundEffect& found = diagnosis.effects[0];
+  for (const ChannelGap& one : diagnosis.gap.per_sensor)
+    if (one.channel == found.location && one.channel != diagnosis.gap.output)
+      return " " + one.channel + " itself goes from " +
+             size_text(found.effect == "sensor-offset" ? one.rms.as_simulated : one.rms.calibrated) + " to " +
+             size_text(one.rms.with_effect) + " " + one.unit + ".";
+  return "";
 }
 
 std::string moved_most(const Diagnosis& diagnosis) {
@@ -114,15 +131,15 @@ std::string sentence(const Diagnosis& diagnosis) {
   const std::string unit = ' ' + gap.unit;
   switch (diagnosis.verdict) {
     case Verdict::none:
-      return "There is no gap to explain: " + gap.output + " as simulated is off by " +
+      return "There is no gap to explain: in " + named_output(gap) + " the simulation is off by " +
              size_text(gap.rms.as_simulated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit + ".";
     case Verdict::miscalibration:
-      return "The simulator is miscalibrated and lacks nothing: its own parameters take " + gap.output + " from " +
-             size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) + unit + " rms" +
+      return "The simulator is miscalibrated and lacks nothing: its own parameters take " + named_output(gap) +
+             " from " + size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) + unit + " rms" +
              (gap.held_out ? " on batches not used for fitting" : "") + "; noise is " + size_text(gap.rms.noise) +
              unit + "." + moved_most(diagnosis);
     case Verdict::unknown:
-      return "The gap is real and has no name: after calibration " + gap.output + " is off by " +
+      return "The gap is real and has no name: in " + named_output(gap) + " calibration leaves " +
              size_text(gap.rms.calibrated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit +
              ", and nothing in the catalogue closes it" + (gap.held_out ? " on batches not used for fitting." : ".") +
              whereabouts(diagnosis);
@@ -132,15 +149,17 @@ std::string sentence(const Diagnosis& diagnosis) {
   }
   std::string text;
   for (const FoundEffect& found : diagnosis.effects) {
-    text += text.empty() ? "" : " And ";
     const std::string means = meaning(found.effect);
-    text += title_of(found.effect, found.location, found.driver) + (means.empty() ? "" : ": " + means) +
-            ", confidence " + confidence_text(found.confidence);
-    if (!found.same_place.empty()) text += " (place: or " + joined(found.same_place, " or ") + ")";
-    text += ".";
+    text += (text.empty() ? "at " : ", and at ") + (found.location == "all" ? "all nodes" : found.location);
+    if (!found.same_place.empty()) text += " (or " + joined(found.same_place, " or ") + ")";
+    text += " " + (means.empty() ? "acts an effect of its own" : means) + " (" + found.effect +
+            (found.driver.empty() ? "" : " driven by " + found.driver) + ", confidence " +
+            confidence_text(found.confidence) + ")";
   }
-  if (diagnosis.verdict == Verdict::ambiguous) text = "Several explanations fit these data; the best is " + text;
-  return text + " " + shrink_text(gap);
+  text += ": " + shrink_text(gap) + own_reading(diagnosis);
+  if (diagnosis.verdict == Verdict::ambiguous) return "Several explanations fit these data. The best: " + text;
+  text[0] = 'A';
+  return text;
 }
 
 class Sections {
@@ -196,6 +215,15 @@ std::vector<std::string> data_problems(const Diagnosis& diagnosis) {
   return lines;
 }
 
+std::string remaining_text(const Diagnosis& diagnosis) {
+  const Remaining& remaining = diagnosis.remaining;
+  if (diagnosis.verdict == Verdict::none || remaining.looks_like.empty()) return "";
+  if (remaining.looks_like == "noise") return "What remains is noise.\n";
+  return wrap("What remains: " + size_text(remaining.unexplained_um) + ' ' + diagnosis.gap.unit +
+                  " beyond noise, cause unknown: " + remaining.looks_like + ".",
+              width, 0);
+}
+
 std::string gap_table(const Diagnosis& diagnosis) {
   Table table({"gap, rms", "as simulated", "calibrated", "with effect", "noise", "unit"});
   const bool named = !diagnosis.effects.empty();
@@ -248,7 +276,8 @@ std::string where_table(const Where& where) {
         one.is_range ? general_text(one.range.low, 5) + " to " + general_text(one.range.high, 5) : one.level;
     add(one.factor, level, one.share, percent(one.share_of_time));
   }
-  for (const PeriodShare& one : where.frequency) add("period", period_text(one.period_min), one.share, "");
+  for (const PeriodShare& one : where.frequency)
+    if (one.share >= .005) add("period", period_text(one.period_min), one.share, "");
   std::string text = '\n' + table.text();
   if (where.chain.known)
     text += wrap("The displacement gap is " + size_text(where.chain.total_um) +
@@ -281,11 +310,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
       if (one.standard_error != 0) parameters.push_back(parameter_text(one));  // a chosen scale is no finding
     if (!parameters.empty()) text += wrap(found.effect + ": " + joined(parameters) + ".", width, 0);
   }
-  const Remaining& remaining = diagnosis.remaining;
-  if (diagnosis.verdict != Verdict::none && !remaining.looks_like.empty())
-    text += wrap("What remains: " + size_text(remaining.unexplained_um) + ' ' + diagnosis.gap.unit +
-                     " beyond noise; it looks like " + remaining.looks_like + ".",
-                 width, 0);
+  text += remaining_text(diagnosis);
   Sections sections;
   sections.add("Ruled out", ruled_out(diagnosis));
   sections.add("Not told apart by these data", not_told_apart(diagnosis));

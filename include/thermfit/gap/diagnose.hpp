@@ -10,6 +10,7 @@
 #include "thermfit/gap/diagnosis.hpp"
 #include "thermfit/gap/investigate.hpp"
 #include "thermfit/gap/judge.hpp"
+#include "thermfit/gap/proof.hpp"
 #include "thermfit/gap/stages.hpp"
 
 namespace thermfit {
@@ -76,7 +77,11 @@ inline ChannelResiduals nested_residual(const std::vector<Explanation>& accounts
 inline std::vector<RuledOut> ruled_out(const Investigation& found, const Judgement& judgement) {
   std::vector<RuledOut> result;
   const double before = excess_of(misfit_of(found.seen, found.calibrated.held.residual));
-  if (before <= 0) return result;
+  const bool nothing_lacks = judgement.verdict == Verdict::none || judgement.verdict == Verdict::miscalibration;
+  if (before <= 0 || nothing_lacks) return result;
+  const auto percent = [](double share) {
+    return std::to_string(static_cast<int>(std::lround(100 * std::clamp(share, 0.0, 1.0)))) + " %";
+  };
   std::vector<std::string> said;
   for (const FoundEffect& one : judgement.effects) {
     said.push_back(one.effect);
@@ -87,11 +92,10 @@ inline std::vector<RuledOut> ruled_out(const Investigation& found, const Judgeme
     if (std::find(said.begin(), said.end(), added.effect) != said.end()) continue;
     said.push_back(added.effect);
     const double share = 1 - excess_of(misfit_of(found.seen, one.held.residual)) / before;
-    const std::string percent = std::to_string(static_cast<int>(std::lround(100 * std::clamp(share, 0.0, 1.0))));
-    result.push_back({added.effect, added.location,
-                      share <= 0
-                          ? "does not shrink the gap on held-out batches"
-                          : "closes " + percent + " % of the gap on held-out batches, the best explanation more"});
+    std::string reason = share < 0.005 ? "does not shrink the gap on held-out batches"
+                                       : "closes " + percent(share) + " of the gap on held-out batches";
+    if (share >= 0.005 && !judgement.effects.empty()) reason += ", the best " + percent(judgement.closed_share);
+    result.push_back({added.effect, added.location, std::move(reason)});
   }
   return result;
 }
@@ -130,19 +134,21 @@ inline Diagnosed diagnose_fully(const ThermalNetwork& network, const Campaign& r
   result.investigation = investigate(network, real, library, candidates, options.search);
   const Investigation& found = result.investigation;
   const Inquiry inquiry{found.seen, found.machine, library, found.folds, options.search.threads};
-  const Judgement judgement = judge(inquiry, found, options.judging);
+  Judgement judgement = judge(inquiry, found, options.judging);
 
-  Diagnosis& diagnosis = result.diagnosis;
-  diagnosis.machine = network.name;
-  diagnosis.batches = found.seen.names;
-  diagnosis.verdict = judgement.verdict;
-  diagnosis.effects = judgement.effects;
   result.residuals.as_simulated = found.as_given;
   result.residuals.calibrated = found.calibrated.held.residual;
   result.residuals.with_effect = judgement.effects.empty() ? found.calibrated.held.residual
                                  : judgement.best->effects.size() > 1
                                      ? detail::nested_residual(found.several, found.seen.batches())
                                      : detail::nested_residual(found.single, found.seen.batches());
+  demand_proof(judgement, result.residuals, found, options.judging, options.seed);
+
+  Diagnosis& diagnosis = result.diagnosis;
+  diagnosis.machine = network.name;
+  diagnosis.batches = found.seen.names;
+  diagnosis.verdict = judgement.verdict;
+  diagnosis.effects = judgement.effects;
   result.residuals.noise = noise_floor(found.seen, judgement.nearest->held.residual);
   diagnosis.gap = gap_of(found.seen, result.residuals, options.seed, !found.folds.empty());
   diagnosis.calibration = detail::calibration_moves(judgement.best->fit);

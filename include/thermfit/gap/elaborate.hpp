@@ -13,6 +13,7 @@
 #include "thermfit/batch/findings.hpp"
 #include "thermfit/gap/conditions.hpp"
 #include "thermfit/gap/diagnose.hpp"
+#include "thermfit/gap/lone_input.hpp"
 #include "thermfit/gap/next_experiment.hpp"
 #include "thermfit/gap/remaining.hpp"
 #include "thermfit/gap/transfer.hpp"
@@ -39,6 +40,7 @@ class Elaboration {
     transfer();
     next();
     data_problems();
+    claims_of_lone_inputs();
   }
 
  private:
@@ -132,14 +134,23 @@ class Elaboration {
     }
   }
 
+  /// What remains in the channel of the gap; where the gap is that of all temperatures, in each of them.
   void remaining() {
     const Gap& gap = diagnosis().gap;
-    const std::string& unit = seen_.channels[channel_].displacement ? "um" : "K";
-    StagedGap rms = gap.rms;
-    for (const ChannelGap& one : gap.per_sensor)
-      if (one.channel == seen_.channels[channel_].name) rms = one.rms;
-    diagnosis().remaining =
-        remaining_gap(real_, series(found_.residuals.with_effect[channel_]), rms.with_effect, rms.noise, unit, seed_);
+    Remaining& all = diagnosis().remaining;
+    const bool displacement = seen_.channels[channel_].displacement;
+    all.white = true;
+    for (std::size_t c = 0; c < seen_.channels.size(); ++c) {
+      if (displacement && c != channel_) continue;
+      const StagedGap& rms = gap.per_sensor[c].rms;
+      const Remaining one = remaining_gap(real_, series(found_.residuals.with_effect[c]), rms.with_effect, rms.noise,
+                                          gap.per_sensor[c].unit, seed_);
+      all.white = all.white && one.white;
+      if (!displacement) all.looks_like += (all.looks_like.empty() ? "" : "; ") + seen_.channels[c].name + ": ";
+      all.looks_like += one.looks_like;
+    }
+    all.unexplained_um =
+        std::sqrt(std::max(0., gap.rms.with_effect * gap.rms.with_effect - gap.rms.noise * gap.rms.noise));
   }
 
   /// The campaign as a machine would have measured it.
@@ -194,6 +205,14 @@ class Elaboration {
             {batch.name + " " + one.channel,
              std::string(rule_name(one.rule)) + (one.note.empty() ? "" : ": " + one.note)});
       }
+  }
+
+  void claims_of_lone_inputs() {
+    for (const LoneInput& one : lone_inputs(seen_))
+      diagnosis().weaker_claims.push_back(
+          "Input " + seen_.excitations[0].input_names[static_cast<std::size_t>(one.input)] + " changes in batch " +
+          seen_.names[one.batch] +
+          " alone: what it drives cannot be judged on batches not used for fitting, and that batch judges nothing.");
   }
 
   Diagnosed& found_;

@@ -12,6 +12,7 @@
 #include "thermfit/gap/paired_account.hpp"
 #include "thermfit/gap/paired_scan.hpp"
 #include "thermfit/gap/parallel.hpp"
+#include "thermfit/gap/resolution.hpp"
 
 namespace thermfit {
 
@@ -71,8 +72,12 @@ class PairedDiagnosis {
       PairedChannel one;
       one.basis = calibration_basis(campaign_, drives_, c);
       one.gap.resize(campaign_.rows());
-      for (std::size_t b = 0; b < campaign_.batches.size(); ++b)
-        campaign_.part(one.gap, b) = campaign_.batches[b].measured.col(c) - campaign_.batches[b].simulated.col(c);
+      SeriesByBatch measured;
+      for (std::size_t b = 0; b < campaign_.batches.size(); ++b) {
+        measured.push_back(campaign_.batches[b].measured.col(c));
+        campaign_.part(one.gap, b) = measured[b] - campaign_.batches[b].simulated.col(c);
+      }
+      one.resolution = resolution_sd(measured);
       one.as_simulated = rms_of(one.gap);
       judge_calibration(campaign_, one);
       if (campaign_.is_output(c)) looseness.push_back(best_looseness(one));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "thermfit/gap/diagnosis.hpp"
 #include "thermfit/gap/paired_channel.hpp"
 #include "thermfit/gap/remaining.hpp"
+#include "thermfit/gap/shrink.hpp"
 #include "thermfit/gap/where_periods.hpp"
 
 namespace thermfit::detail {
@@ -65,39 +65,26 @@ class PairedAccount {
     gap.unit = told_ < campaign_.temperatures ? "K" : "um";
     gap.rms = staged(told_, all);
     gap.held_out = all > 1;
-    gap.shrink_percent = 100 * (1 - gap.rms.with_effect / std::max(gap.rms.calibrated, 1e-12));
-    const double noise2 = gap.rms.noise * gap.rms.noise, open = gap.rms.calibrated * gap.rms.calibrated - noise2;
-    if (open > 0)
-      gap.shrink_of_explainable_percent =
-          100 *
-          std::min(1., (gap.rms.calibrated * gap.rms.calibrated - gap.rms.with_effect * gap.rms.with_effect) / open);
-    gap.shrink_ci95_percent = shrink_interval();
+    gap.shrink_percent = shrink_percent(gap.rms.calibrated, gap.rms.with_effect);
+    gap.shrink_of_explainable_percent =
+        shrink_of_explainable_percent(gap.rms.calibrated, gap.rms.with_effect, gap.rms.noise);
+    gap.shrink_ci95_percent = shrink_interval(squares_of(first_residuals_), squares_of(last_residuals_), .95, seed_);
     for (std::size_t b = 0; b < all; ++b) gap.per_batch.push_back({campaign_.batches[b].name, staged(told_, b)});
     for (Index c = 0; c < campaign_.temperatures; ++c)
       if (campaign_.is_output(c))
         gap.per_sensor.push_back({campaign_.channels[static_cast<std::size_t>(c)], "K", staged(c, all)});
   }
 
-  /// 95 % interval of the shrink from 1000 draws of whole batches.
-  Interval shrink_interval() const {
-    const std::size_t all = campaign_.batches.size();
-    std::vector<double> before, after, shrinks;
-    for (std::size_t b = 0; b < all; ++b) {
-      before.push_back(Vector(campaign_.part(first_residuals_[static_cast<std::size_t>(told_)], b)).squaredNorm());
-      after.push_back(Vector(campaign_.part(last_residuals_[static_cast<std::size_t>(told_)], b)).squaredNorm());
+  /// Squares by batch of the channel that is told.
+  BatchSquares squares_of(const std::vector<Vector>& residuals) const {
+    const Index all = static_cast<Index>(campaign_.batches.size());
+    BatchSquares result{Vector(all), Vector(all)};
+    for (Index b = 0; b < all; ++b) {
+      const Vector part = campaign_.part(residuals[static_cast<std::size_t>(told_)], static_cast<std::size_t>(b));
+      result.sum(b) = part.squaredNorm();
+      result.count(b) = static_cast<double>(part.size());
     }
-    std::minstd_rand random(seed_);
-    for (int draw = 0; draw < 1000; ++draw) {
-      double sum_before = 0, sum_after = 0;
-      for (std::size_t k = 0; k < all; ++k) {
-        const std::size_t b = random() % all;
-        sum_before += before[b];
-        sum_after += after[b];
-      }
-      shrinks.push_back(100 * (1 - std::sqrt(sum_after / std::max(sum_before, 1e-300))));
-    }
-    std::sort(shrinks.begin(), shrinks.end());
-    return {shrinks[25], shrinks[974]};
+    return result;
   }
 
   void tell_where(Diagnosis& result) const {

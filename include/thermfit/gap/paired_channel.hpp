@@ -17,6 +17,7 @@ struct PairedChannel {
   Matrix products;          ///< cross-products of both
   double as_simulated = 0;  ///< rms
   double calibrated = 0;    ///< rms on batches left out
+  double resolution = 0;    ///< what rounding of the readings adds
   double noise = 0;         ///< of a single sample, from second differences of what calibration leaves
   double correlation = 1;   ///< how many samples count as one, (1 + rho) / (1 - rho), at most 6
   double evidence = 0;      ///< of calibration alone, nats
@@ -95,7 +96,7 @@ inline void judge_calibration(const PairedCampaign& campaign, PairedChannel& cha
     const Vector left = held_out_residual(campaign, channel.basis.regressors, channel.gap, channel.basis.prior_sd,
                                           channel.calibrated * std::sqrt(channel.correlation));
     channel.calibrated = rms_of(left) + 1e-6;
-    channel.noise = white_noise(campaign, left);
+    channel.noise = std::max(white_noise(campaign, left), channel.resolution);
     const double rho = lag_one_correlation(campaign, left);
     channel.correlation = std::min((1 + rho) / (1 - rho), 6.);
   }

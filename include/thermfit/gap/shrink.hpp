@@ -17,7 +17,8 @@ struct BatchSquares {
   Vector count;  ///< values by batch
 
   double rms() const { return count.sum() > 0 ? std::sqrt(sum.sum() / count.sum()) : 0; }
-  double rms(Index batch) const { return count(batch) > 0 ? std::sqrt(sum(batch) / count(batch)) : 0; }
+  /// NaN for a batch without values.
+  double rms(Index batch) const { return count(batch) > 0 ? std::sqrt(sum(batch) / count(batch)) : std::nan(""); }
 };
 
 /// 1 - with_effect / calibrated, in percent; 0 where there is nothing to shrink.

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "thermfit/gap/diagnosis.hpp"
 #include "thermfit/gap/explanation.hpp"
+#include "thermfit/gap/resolution.hpp"
 #include "thermfit/gap/shrink.hpp"
 
 namespace thermfit {
@@ -33,7 +35,8 @@ inline SeriesByBatch repeat_differences(const MachineRecord& seen, std::size_t c
   return result;
 }
 
-/// The noise of each channel: from repeats, else from the high-frequency part of what the best account leaves.
+/// The noise of each channel: from repeats, else from the high-frequency part of what the best account leaves; never
+/// less than the readings' resolution adds.
 inline Vector noise_floor(const MachineRecord& seen, const ChannelResiduals& best) {
   Vector result(static_cast<Index>(seen.channels.size()));
   for (std::size_t c = 0; c < seen.channels.size(); ++c) {
@@ -42,7 +45,8 @@ inline Vector noise_floor(const MachineRecord& seen, const ChannelResiduals& bes
     for (const Vector& r : repeats)
       for (Index k = 0; k < r.size(); ++k)
         if (!std::isnan(r(k))) squares += r(k) * r(k), ++count;
-    result(static_cast<Index>(c)) = count > 0 ? std::sqrt(squares / count) : high_frequency_sd(best[c]);
+    const double changes = count > 0 ? std::sqrt(squares / count) : high_frequency_sd(best[c]);
+    result(static_cast<Index>(c)) = std::max(changes, resolution_sd(seen.channels[c].measured));
   }
   return result;
 }

@@ -300,11 +300,11 @@ class PlaceSearch {
 
 /// Effect-free places of a calibrated machine, picked ones first.
 ///
-/// Each place gets a course of unknown disturbance (heat: six pieces a batch; readings: a broken
-/// line of six corners; independent, of one variance), integrated out
-/// together with all calibration parameters: the batch form of an unknown-input smoother with diffusion by maximum
-/// likelihood. The best is kept and the others judged anew beside it, up to three. Under no deficiency a place gains
-/// rarely more than 3 nats (half chi-square mixture on the boundary); 5 are asked for.
+/// Each place gets a course of unknown disturbance (heat: six pieces a batch; readings: a broken line of six corners;
+/// independent, of one variance), integrated out together with all calibration parameters: the batch form of an
+/// unknown-input smoother with diffusion by maximum likelihood. The best is kept and the others judged anew beside it,
+/// up to three. Under no deficiency a place gains rarely more than 3 nats (half chi-square mixture on the boundary); 5
+/// are asked for.
 inline std::vector<DisturbedPlace> disturbed_places(const MachineRecord& seen, const MapFit& calibrated,
                                                     const EffectLibrary& library) {
   return detail::PlaceSearch(seen, calibrated, library).run();

@@ -1,0 +1,56 @@
+#pragma once
+
+/// No effect is named that has not shown, on batches it has not seen, that the gap shrinks with it.
+
+#include <algorithm>
+
+#include "thermfit/gap/judge.hpp"
+#include "thermfit/gap/lone_input.hpp"
+#include "thermfit/gap/stages.hpp"
+
+namespace thermfit {
+
+/// Whether the gap of some channel shrinks for sure and by something worth a name: the 95 % interval lies above 0, and
+/// a fifth of the gap is gone or two fifths may be. An offset counts against the machine as given, since calibration
+/// moves offsets too.
+inline bool shrinks_somewhere(const MachineRecord& seen, const StageResiduals& stages, bool offset,
+                              std::uint64_t seed) {
+  const ChannelResiduals& stage = offset ? stages.as_simulated : stages.calibrated;
+  for (std::size_t c = 0; c < seen.channels.size(); ++c) {
+    const BatchSquares before = squares_of(seen, stage, {c}), after = squares_of(seen, stages.with_effect, {c});
+    const Interval interval = shrink_interval(before, after, 0.95, seed);
+    if (interval.low > 0 && (shrink_percent(before.rms(), after.rms()) > 20 || interval.high > 40)) return true;
+  }
+  return false;
+}
+
+/// Whether a batch judges that cannot: it alone drives an input.
+inline bool judged_by_lone_batch(const Investigation& found) {
+  for (const std::vector<std::size_t>& fold : found.folds)
+    for (const std::size_t batch : fold)
+      if (drives_alone(found.seen, batch)) return true;
+  return false;
+}
+
+/// Takes back what held-out batches do not bear out. Without any, or where one of them cannot judge, what fits best is
+/// a suspicion: `ambiguous`, at most even odds. With some, but no channel that shrinks beyond doubt: nothing is named.
+/// `stages` are the residuals with what `judgement` names; they follow it.
+inline void demand_proof(Judgement& judgement, StageResiduals& stages, const Investigation& found,
+                         const JudgingOptions& options, std::uint64_t seed) {
+  if (judgement.effects.empty()) return;
+  if (found.folds.empty() || judged_by_lone_batch(found)) {
+    judgement.verdict = Verdict::ambiguous;
+    for (FoundEffect& one : judgement.effects) one.confidence = std::min(one.confidence, 0.5);
+    return;
+  }
+  const bool offset = std::any_of(judgement.effects.begin(), judgement.effects.end(),
+                                  [](const FoundEffect& one) { return one.effect == "sensor-offset"; });
+  if (shrinks_somewhere(found.seen, stages, offset, seed)) return;
+  judgement.effects.clear();
+  judgement.best = &found.calibrated;
+  stages.with_effect = stages.calibrated;
+  const bool closed = excess_of(misfit_of(found.seen, found.calibrated.held.residual)) <= options.least_excess;
+  judgement.verdict = closed ? Verdict::miscalibration : Verdict::unknown;
+}
+
+}  // namespace thermfit
