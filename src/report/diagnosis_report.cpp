@@ -136,8 +136,9 @@ std::string sentence(const Diagnosis& diagnosis) {
     case Verdict::miscalibration:
       return "The simulator is miscalibrated and lacks nothing: its own parameters take " + named_output(gap) +
              " from " + size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) + unit + " rms" +
-             (gap.held_out ? " on batches not used for fitting" : "") + "; noise is " + size_text(gap.rms.noise) +
-             unit + "." + moved_most(diagnosis);
+             (gap.held_out ? " on batches not used for fitting"
+                           : " on the one batch they were fitted to, which proves nothing") +
+             "; the noise is " + size_text(gap.rms.noise) + unit + "." + moved_most(diagnosis);
     case Verdict::unknown:
       return "The gap is real and has no name: in " + named_output(gap) + " calibration leaves " +
              size_text(gap.rms.calibrated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit +

@@ -47,3 +47,32 @@ TEST_CASE("the menu drives the inputs of the campaign within their range", "[gap
     CHECK(schedule.hours() > 0);
   }
 }
+
+TEST_CASE("a faulty thermometer takes its fault along when it changes places", "[gap]") {
+  const ThermalNetwork machine = small_machine();
+  const MachineRecord seen = observations_of(machine, small_campaign(machine, 3));
+  const std::vector<Schedule> swaps = sensor_swaps(machine, seen, {"T2"});
+  REQUIRE(swaps.size() == 1);
+  CHECK(swaps[0].swapped == "T2");
+  CHECK(swaps[0].with == "T1");
+  ThermalNetwork faulty = machine;
+  faulty.effects = {{"sensor-drift", "T2", "", {{"rate_K_per_h", 0.5}}}};
+  const ThermalNetwork after = with_swap(faulty, swaps[0]);
+  CHECK(after.effects[0].location == "T1");
+  CHECK(with_swap(after, swaps[0]).effects[0].location == "T2");
+  CHECK(sensor_swaps(machine, seen, {"displacement", "head"}).empty());
+}
+
+TEST_CASE("without a network the plan isolates the effect and its rival", "[gap]") {
+  FoundEffect found;
+  found.effect = "sensor-drift";
+  found.location = "T2";
+  CHECK(experiment_by_kind(found, 6).plan.empty());
+  found.alternatives = {{"friction-law", "bearing", "spindle_rpm", .3}};
+  const NextExperiment plan = experiment_by_kind(found, 6);
+  REQUIRE(plan.plan.size() == 2);
+  CHECK(plan.plan[0].schedule == "sensor swap");
+  CHECK(plan.plan[1].schedule == "speed stair");
+  CHECK(plan.separates.size() == 2);
+  CHECK(std::isnan(plan.expected_confidence));
+}

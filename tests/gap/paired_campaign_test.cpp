@@ -80,6 +80,6 @@ TEST_CASE("batches and channels that only one side has are left out and named", 
   const PairedCampaign paired = pair_campaigns({batch_of("K01", coarse, .01), batch_of("K02", coarse, .01)}, {sim});
   CHECK(paired.batches.size() == 1);
   CHECK(paired.channels == std::vector<std::string>{"room", "Z"});
-  CHECK(paired.remarks == std::vector<std::string>{"T1 is measured but not simulated; left out",
+  CHECK(paired.remarks == std::vector<std::string>{"T1: measured but not simulated; left out",
                                                    "batch K02 has no simulated counterpart; left out"});
 }

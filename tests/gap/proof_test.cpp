@@ -22,12 +22,15 @@ struct Case {
       found.seen.names.push_back("K" + std::to_string(b));
       found.seen.time_s.push_back(Vector::LinSpaced(20, 0, 1900));
       Excitation drive;
-      drive.inputs = Matrix::Constant(20, 1, 50);
-      if (b == lone_batch) drive.inputs.bottomRows(10).setZero();
+      drive.input_names = {"heater"};
+      drive.inputs = Matrix::Zero(20, 1);
+      if (b == lone_batch) drive.inputs.bottomRows(10).setConstant(50);
       found.seen.excitations.push_back(drive);
       before.push_back(Vector::Constant(20, 1));
       after.push_back(Vector::Constant(20, left_K[b]));
     }
+    found.machine.heat_sources.emplace_back();
+    found.machine.heat_sources[0].input = "heater";
     found.folds = folds_of(left_K.size());
     found.calibrated.held.residual = {before};
     stages.as_simulated = {before};
@@ -64,7 +67,8 @@ TEST_CASE("a shrink that is certain but next to nothing names no effect") {
   CHECK(one.judgement.verdict == Verdict::unknown);
 }
 
-TEST_CASE("with one batch an effect is a suspicion, at even odds at most") {
+TEST_CASE("with one or two batches an effect is a suspicion, at even odds at most") {
+  CHECK(Case({0.1, 0.1}).judgement.verdict == Verdict::ambiguous);
   const Case one({0.1});
   CHECK(one.judgement.verdict == Verdict::ambiguous);
   REQUIRE(one.judgement.effects.size() == 1);

@@ -41,6 +41,7 @@ class Bench {
   std::string write(const std::string& name, const nlohmann::json& document) const {
     return folder_.write(name, document.dump(1));
   }
+  std::string write_text(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
 
   /// The document of `thermfit diagnose machine batches --json` and further words.
   nlohmann::json diagnose(const std::string& machine, const std::vector<std::string>& batches,

@@ -63,7 +63,7 @@ TEST_CASE("no name is given with certainty where one run alone drives an input, 
   const nlohmann::json all = bench.diagnose(
       machine, bench.runs({"apm_mimo_599", "sin_5_run_1", "sin_5_run_2", "sin_5_run_3", "step_run_1", "step_run_2"}));
   CHECK(confidence_in_others(all, known) <= 0.5);
-  CHECK(all.at("weaker_claims").dump().find("Input Q2 changes in batch apm_mimo_599 alone") != std::string::npos);
+  CHECK(all.at("weaker_claims").dump().find("Input Q2 is on in batch apm_mimo_599 alone") != std::string::npos);
 
   const nlohmann::json alone = bench.diagnose(machine, bench.runs({"apm_mimo_599"}));
   CHECK(alone.at("verdict") != "effect");

@@ -125,6 +125,10 @@ inline Diagnosed diagnose_fully(const ThermalNetwork& network, const Campaign& r
   for (const auto* list : {&options.effects, &options.without})
     for (const std::string& name : *list) library.at(name);
   if (real.empty()) throw Error("campaign", "no batches", "at least one, better five or more");
+  for (const Batch& batch : real)
+    if (batch.rows() < 8)
+      throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
+                  std::to_string(batch.rows()) + " samples", "at least 8", "a diagnosis compares courses in time");
   const Setting setting = setting_of(network, real);
   std::vector<ThermalNetwork::AddedEffect> candidates;
   for (ThermalNetwork::AddedEffect& one : library.candidates(setting))

@@ -198,6 +198,17 @@ class Elaboration {
   }
 
   void data_problems() {
+    std::string missing, unknown;
+    for (const ThermalNetwork::Sensor& sensor : given_.sensors)
+      if (real_[0].temperatures.find(sensor.column) < 0) missing += (missing.empty() ? "" : ", ") + sensor.column;
+    for (const std::string& name : real_[0].temperatures.names)
+      if (std::none_of(given_.sensors.begin(), given_.sensors.end(),
+                       [&](const ThermalNetwork::Sensor& sensor) { return sensor.column == name; }))
+        unknown += (unknown.empty() ? "" : ", ") + name;
+    if (!missing.empty())
+      diagnosis().data_problems.push_back({"sensors", "the batches lack " + missing + "; the machine file has them"});
+    if (!unknown.empty())
+      diagnosis().data_problems.push_back({"sensors", "the machine file lacks " + unknown + "; left out"});
     for (const Batch& batch : real_)
       for (const Finding& one : find_faults(batch)) {
         if (one.rule == FindingRule::collinear || one.rule == FindingRule::unit) continue;
@@ -208,9 +219,9 @@ class Elaboration {
   }
 
   void claims_of_lone_inputs() {
-    for (const LoneInput& one : lone_inputs(seen_))
+    for (const LoneInput& one : lone_inputs(given_, seen_))
       diagnosis().weaker_claims.push_back(
-          "Input " + seen_.excitations[0].input_names[static_cast<std::size_t>(one.input)] + " changes in batch " +
+          "Input " + seen_.excitations[0].input_names[static_cast<std::size_t>(one.input)] + " is on in batch " +
           seen_.names[one.batch] +
           " alone: what it drives cannot be judged on batches not used for fitting, and that batch judges nothing.");
   }

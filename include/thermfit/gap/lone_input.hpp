@@ -1,10 +1,10 @@
 #pragma once
 
-/// Inputs that a single batch makes vary: without that batch, what they drive is known by its prior alone, so that the
+/// Inputs that are on in a single batch: without that batch, what they drive is known by its prior alone, so that the
 /// batch cannot judge what the others have learnt.
 
 #include <algorithm>
-#include <cmath>
+#include <string>
 #include <vector>
 
 #include "thermfit/gap/observations.hpp"
@@ -16,25 +16,31 @@ struct LoneInput {
   std::size_t batch = 0;
 };
 
-/// Inputs constant over all batches but one. With fewer than three batches "all but one" means nothing: none.
-inline std::vector<LoneInput> lone_inputs(const MachineRecord& seen) {
+/// Inputs of the machine's heat sources and effects that are 0 in all batches but one. With fewer than three batches
+/// "all but one" means nothing: none.
+inline std::vector<LoneInput> lone_inputs(const ThermalNetwork& network, const MachineRecord& seen) {
   std::vector<LoneInput> result;
   const std::vector<Excitation>& all = seen.excitations;
-  for (Index i = 0; all.size() > 2 && i < all[0].inputs.cols(); ++i)
+  const auto drives = [&](const std::string& name) {
+    return std::any_of(network.heat_sources.begin(), network.heat_sources.end(),
+                       [&](const auto& source) { return source.input == name; }) ||
+           std::any_of(network.effects.begin(), network.effects.end(),
+                       [&](const auto& effect) { return effect.driver == name; });
+  };
+  for (Index i = 0; all.size() > 2 && i < all[0].inputs.cols(); ++i) {
+    if (!drives(all[0].input_names[static_cast<std::size_t>(i)])) continue;
     for (std::size_t alone = 0; alone < all.size(); ++alone) {
-      double low = INFINITY, high = -INFINITY;
-      for (std::size_t b = 0; b < all.size(); ++b) {
-        if (b == alone) continue;
-        low = std::min(low, all[b].inputs.col(i).minCoeff());
-        high = std::max(high, all[b].inputs.col(i).maxCoeff());
-      }
-      if (low == high && (all[alone].inputs.col(i).array() != low).any()) result.push_back({i, alone});
+      bool others = false;
+      for (std::size_t b = 0; b < all.size(); ++b)
+        others = others || (b != alone && (all[b].inputs.col(i).array() != 0).any());
+      if (!others && (all[alone].inputs.col(i).array() != 0).any()) result.push_back({i, alone});
     }
+  }
   return result;
 }
 
-inline bool drives_alone(const MachineRecord& seen, std::size_t batch) {
-  const std::vector<LoneInput> lone = lone_inputs(seen);
+inline bool drives_alone(const ThermalNetwork& network, const MachineRecord& seen, std::size_t batch) {
+  const std::vector<LoneInput> lone = lone_inputs(network, seen);
   return std::any_of(lone.begin(), lone.end(), [&](const LoneInput& one) { return one.batch == batch; });
 }
 

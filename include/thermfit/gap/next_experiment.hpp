@@ -38,7 +38,8 @@ inline double distance(const FittedRival& a, const FittedRival& b, const Schedul
                        const MapFit& calibrated, const std::vector<ResidualNoise>& noise, const Matrix& information,
                        const EffectLibrary& library) {
   const std::vector<Excitation> plan{schedule.excitation};
-  const Simulation own = simulate(a.network, plan, library)[0], other = simulate(b.network, plan, library)[0];
+  const Simulation own = simulate(with_swap(a.network, schedule), plan, library)[0],
+                   other = simulate(with_swap(b.network, schedule), plan, library)[0];
   const Simulation base = simulate(calibrated.network(), plan, library, calibrated.parameters)[0];
   const Vector slopes = calibrated.slopes();
   const Index samples = schedule.excitation.samples();
@@ -80,7 +81,11 @@ inline NextExperiment next_experiment(const std::vector<FittedRival>& rivals, co
   const Index n = calibrated.t.size();
   const Matrix information = calibrated.total().information + Matrix::Identity(n, n);
   const Schedule* best = nullptr;
-  const std::vector<Schedule> menu = experiment_menu(calibrated.prior, seen);
+  std::vector<Schedule> menu = experiment_menu(calibrated.prior, seen);
+  std::vector<std::string> suspects;
+  for (const FittedRival* rival : {&a, &b})
+    for (const ThermalNetwork::AddedEffect& added : rival->network.effects) suspects.push_back(added.location);
+  for (Schedule& swap : sensor_swaps(calibrated.prior, seen, suspects)) menu.push_back(std::move(swap));
   double best_square = 0;
   for (const Schedule& schedule : menu) {
     const double D = detail::distance(a, b, schedule, seen, calibrated, noise, information, library);
@@ -99,6 +104,43 @@ inline NextExperiment next_experiment(const std::vector<FittedRival>& rivals, co
   if (result.confusion_after > .05)
     result.why = "no schedule of the menu separates " + a.name + " from " + b.name +
                  " well; a sensor at the place in question would";
+  return result;
+}
+
+/// The schedule that shows an effect by itself, where no network tells what each would show.
+inline PlannedBlock isolating_block(const FoundEffect& effect, double batch_hours) {
+  const auto one_of = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), effect.effect) != names.end();
+  };
+  if (one_of({"sensor-offset", "sensor-gain", "sensor-drift", "sensor-lag"}))
+    return {"sensor swap", "exchange " + effect.location + " with a trusted thermometer, then repeat a batch",
+            batch_hours};
+  if (one_of({"friction-law", "forced-convection", "speed-shift", "joint-conductance"}))
+    return {"speed stair", "each speed held until the machine settles", 1.25 * batch_hours};
+  if (one_of({"probe-drift", "ambient-drift", "missing-link"}))
+    return {"idle day", "everything off, room logged", 4 * batch_hours};
+  if (one_of({"coolant", "heat-source"}) && !effect.driver.empty() && effect.driver != "constant")
+    return {effect.driver + " toggle", "only " + effect.driver + " on and off, twice, everything else held",
+            batch_hours};
+  if (one_of({"initial-gradient"})) return {"repeat", "the first batch again, after a night at rest", batch_hours};
+  return {"cool-down", "full speed, then off for twice as long", 1.5 * batch_hours};
+}
+
+/// A plan without a network: what isolates the effect found, then what isolates its strongest rival. How far it
+/// separates them is not known.
+inline NextExperiment experiment_by_kind(const FoundEffect& found, double batch_hours) {
+  NextExperiment result;
+  result.expected_confidence = result.confusion_before = result.confusion_after = std::nan("");
+  if (found.alternatives.empty()) return result;
+  const Rival& rival = found.alternatives[0];
+  result.separates = {found.effect + " at " + found.location, rival.effect + " at " + rival.location};
+  FoundEffect other;
+  other.effect = rival.effect;
+  other.location = rival.location;
+  other.driver = rival.driver;
+  result.plan = {isolating_block(found, batch_hours), isolating_block(other, batch_hours)};
+  if (result.plan[0].schedule == result.plan[1].schedule) result.plan.pop_back();
+  result.why = "without the network the probability of confusion after the plan cannot be given";
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "thermfit/gap/conditions.hpp"
 #include "thermfit/gap/diagnosis.hpp"
+#include "thermfit/gap/next_experiment.hpp"
 #include "thermfit/gap/paired_channel.hpp"
 #include "thermfit/gap/remaining.hpp"
 #include "thermfit/gap/shrink.hpp"
@@ -28,6 +29,11 @@ class PairedAccount {
     tell_gap(result);
     tell_where(result);
     tell_limits(result);
+    double hours = 0;
+    for (const PairedBatch& batch : campaign_.batches)
+      hours = std::max(hours, batch.time_s(batch.time_s.size() - 1) / 3600);
+    result.next_experiment = result.effects.empty() ? experiment_without_rivals(result, hours)
+                                                    : experiment_by_kind(result.effects[0], hours);
   }
 
  private:

@@ -141,8 +141,10 @@ inline PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, 
   if (result.channels.empty())
     throw Error(sim[0].source.empty() ? "simulated batches" : sim[0].source, "no channel of the measured batches",
                 "columns with the same names on both sides", "rename them or set --temperatures and --errors");
+  std::string unpaired;
   for (const std::string& name : real[0].temperatures.names)
-    if (sim[0].temperatures.find(name) < 0) result.remarks.push_back(name + " is measured but not simulated; left out");
+    if (sim[0].temperatures.find(name) < 0) unpaired += (unpaired.empty() ? "" : ", ") + name;
+  if (!unpaired.empty()) result.remarks.push_back(unpaired + ": measured but not simulated; left out");
 
   bool resampled = false;
   for (const Batch& batch : real) {

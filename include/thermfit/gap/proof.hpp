@@ -28,7 +28,7 @@ inline bool shrinks_somewhere(const MachineRecord& seen, const StageResiduals& s
 inline bool judged_by_lone_batch(const Investigation& found) {
   for (const std::vector<std::size_t>& fold : found.folds)
     for (const std::size_t batch : fold)
-      if (drives_alone(found.seen, batch)) return true;
+      if (drives_alone(found.machine, found.seen, batch)) return true;
   return false;
 }
 
@@ -38,13 +38,13 @@ inline bool judged_by_lone_batch(const Investigation& found) {
 inline void demand_proof(Judgement& judgement, StageResiduals& stages, const Investigation& found,
                          const JudgingOptions& options, std::uint64_t seed) {
   if (judgement.effects.empty()) return;
-  if (found.folds.empty() || judged_by_lone_batch(found)) {
-    judgement.verdict = Verdict::ambiguous;
-    for (FoundEffect& one : judgement.effects) one.confidence = std::min(one.confidence, 0.5);
-    return;
-  }
   const bool offset = std::any_of(judgement.effects.begin(), judgement.effects.end(),
                                   [](const FoundEffect& one) { return one.effect == "sensor-offset"; });
+  if (found.folds.size() < 3 || judged_by_lone_batch(found)) {
+    judgement.verdict = Verdict::ambiguous;
+    for (FoundEffect& one : judgement.effects) one.confidence = std::min(one.confidence, 0.5);
+    if (found.folds.empty()) return;
+  }
   if (shrinks_somewhere(found.seen, stages, offset, seed)) return;
   judgement.effects.clear();
   judgement.best = &found.calibrated;

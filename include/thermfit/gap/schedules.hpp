@@ -16,6 +16,7 @@ struct Schedule {
   std::string name;  ///< "speed stair", "cool-down", …
   std::string how;   ///< settings in words
   Excitation excitation;
+  std::string swapped, with;  ///< sensors that change places; empty: none
 
   double hours() const { return excitation.time_s(excitation.samples() - 1) / 3600; }
 };
@@ -57,7 +58,7 @@ class Menu {
     std::vector<Schedule> menu;
     const auto add = [&](const std::string& name, const std::string& how, double spans, auto level,
                          double swing_K = 0) {
-      menu.push_back({name, how, excitation(spans, level, swing_K)});
+      menu.push_back({name, how, excitation(spans, level, swing_K), "", ""});
     };
     const double top = main_ >= 0 ? largest_[static_cast<std::size_t>(main_)] : 0;
     if (top > 0) {
@@ -88,7 +89,7 @@ class Menu {
     add(
         "idle day", "everything off while the room swings by 6 K", 4, [](Index, double) { return 0.; }, 3);
     if (!seen_.excitations.empty())
-      menu.push_back({"repeat", "batch " + seen_.names[0] + " once more", seen_.excitations[0]});
+      menu.push_back({"repeat", "batch " + seen_.names[0] + " once more", seen_.excitations[0], "", ""});
     return menu;
   }
 
@@ -128,6 +129,35 @@ class Menu {
 };
 
 }  // namespace detail
+
+/// `network` with the thermometers of `schedule` exchanged: a fault goes with its thermometer to the other's place.
+inline ThermalNetwork with_swap(ThermalNetwork network, const Schedule& schedule) {
+  for (ThermalNetwork::AddedEffect& added : network.effects)
+    if (added.location == schedule.swapped)
+      added.location = schedule.with;
+    else if (added.location == schedule.with)
+      added.location = schedule.swapped;
+  return network;
+}
+
+/// For every thermometer among `suspects`: a batch repeated after it has changed places with another node's.
+inline std::vector<Schedule> sensor_swaps(const ThermalNetwork& network, const MachineRecord& seen,
+                                          const std::vector<std::string>& suspects) {
+  std::vector<Schedule> result;
+  for (const ThermalNetwork::Sensor& own : network.sensors) {
+    if (own.node < 0 || std::find(suspects.begin(), suspects.end(), own.column) == suspects.end()) continue;
+    for (const ThermalNetwork::Sensor& other : network.sensors) {
+      if (other.node < 0 || other.node == own.node) continue;
+      if (std::find(suspects.begin(), suspects.end(), other.column) != suspects.end()) continue;
+      result.push_back({"sensor swap",
+                        "exchange " + own.column + " and " + other.column + ", then batch " + seen.names[0] +
+                            " once more: a faulty thermometer takes its fault along",
+                        seen.excitations[0], own.column, other.column});
+      break;
+    }
+  }
+  return result;
+}
 
 /// Speed stair, single high speed, cool-down, the other inputs alone or toggled, idle day, repeat; those that the
 /// campaign's inputs allow. Needs one batch at least.
