@@ -134,8 +134,10 @@ std::string sentence(const Diagnosis& diagnosis) {
       return "There is no gap to explain: in " + named_output(gap) + " the simulation is off by " +
              size_text(gap.rms.as_simulated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit + ".";
     case Verdict::miscalibration:
-      return "The simulator is miscalibrated and lacks nothing: its own parameters take " + named_output(gap) +
-             " from " + size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) + unit + " rms" +
+      return (gap.held_out ? "The simulator is miscalibrated and lacks nothing: its own parameters take "
+                           : "The simulator's own parameters can close the gap: they take ") +
+             named_output(gap) + " from " + size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) +
+             unit + " rms" +
              (gap.held_out ? " on batches not used for fitting"
                            : " on the one batch they were fitted to, which proves nothing") +
              "; the noise is " + size_text(gap.rms.noise) + unit + "." + moved_most(diagnosis);

@@ -288,10 +288,11 @@ class PairedDiagnosis {
   /// The gap that is told must shrink by a fifth on batches left out (an offset: against the simulator as given), else
   /// the effect explains something else.
   bool told_gap_shrinks() const {
-    const PairedChannel &before = first_[static_cast<std::size_t>(told_)],
-                        &after = channels_[static_cast<std::size_t>(told_)];
-    const bool offset = result_.effects[0].effect == "sensor-offset";
-    return after.calibrated < .8 * (offset ? before.as_simulated : before.calibrated);
+    Diagnosis trial;
+    trial.effects = result_.effects;
+    PairedAccount(campaign_, first_, channels_, told_, options_.seed).tell(trial);
+    const StagedGap& rms = trial.gap.rms;
+    return rms.with_effect < .8 * (trial.effects[0].effect == "sensor-offset" ? rms.as_simulated : rms.calibrated);
   }
 
   /// A fault of a thermometer shows in its own reading alone, so that reading judges it whatever has no name elsewhere.
