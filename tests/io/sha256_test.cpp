@@ -1,5 +1,8 @@
 #include "thermfit/io/sha256.hpp"
 
+#include <random>
+#include <vector>
+
 #include "support/catch.hpp"
 
 using thermfit::sha256_hex;
@@ -18,5 +21,18 @@ TEST_CASE("feeding SHA-256 in pieces of any size changes nothing", "[io]") {
     thermfit::Sha256 hash;
     for (std::size_t i = 0; i < text.size(); i += piece) hash.update(std::string_view(text).substr(i, piece));
     CHECK(hash.hex() == sha256_hex(text));
+  }
+}
+
+TEST_CASE("the processor's SHA instructions and the portable code compress alike", "[io]") {
+  using namespace thermfit::detail;
+  std::mt19937 random(7);
+  std::vector<unsigned char> bytes(64 * 20);
+  for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(random());
+  for (const std::size_t blocks : {1U, 2U, 20U}) {
+    Sha256State chosen{1, 2, 3, 4, 5, 6, 7, 0xffffffff}, portable = chosen;
+    sha256_blocks(chosen, bytes.data(), blocks);
+    sha256_blocks_portable(portable, bytes.data(), blocks);
+    CHECK(chosen == portable);
   }
 }
