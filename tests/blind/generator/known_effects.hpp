@@ -48,6 +48,16 @@ inline std::vector<Index> warm_group(const Machine& machine) {
   return group;
 }
 
+inline Index warm_lump(Scene& scene) { return scene.random.pick(warm_group(scene.machine)); }
+
+/// At one lump; those around it count as right too.
+inline Effect at_lump(const Scene& scene, const std::string& name, Index lump) {
+  Effect effect;
+  effect.name = name;
+  effect.places = names(scene.machine, scene.machine.around(lump));
+  return effect;
+}
+
 inline std::vector<std::pair<Index, double>> surfaces(const Machine& machine, const std::vector<Index>& lumps) {
   std::vector<std::pair<Index, double>> found;
   for (const Index lump : lumps)
@@ -109,12 +119,9 @@ inline Effect friction_law(Scene scene, double size) {
 
 /// A jacket with finite flow: effectiveness 1 - exp(-NTU), coolant that warms a little while it runs.
 inline Effect coolant(Scene scene, double size) {
-  Effect effect;
-  effect.name = "coolant";
+  const Index lump = warm_lump(scene);
+  Effect effect = at_lump(scene, "coolant", lump);
   effect.driver = "coolant";
-  const auto group = warm_group(scene.machine);
-  const Index lump = scene.random.pick(group);
-  effect.places = names(scene.machine, scene.machine.around(lump));
   const Index column = scene.input("coolant");
   const bool chilled = scene.random.chance(.7);
   const double supply_degC = chilled ? scene.random.uniform(16, 24) : 0, below_air_K = scene.random.uniform(0, 3);
@@ -264,11 +271,8 @@ inline Effect missing_link(Scene scene, double size) {
 
 /// A slab behind a lump, three cells deep: heat soaks in and comes back.
 inline Effect thermal_memory(Scene scene, double size) {
-  Effect effect;
-  effect.name = "thermal-memory";
-  const auto group = warm_group(scene.machine);
-  const Index lump = scene.random.pick(group);
-  effect.places = names(scene.machine, scene.machine.around(lump));
+  const Index lump = warm_lump(scene);
+  Effect effect = at_lump(scene, "thermal-memory", lump);
   const double capacity = scene.random.uniform(.4, 1.2) * scene.machine.lumped.capacity_J_per_K[lump] * std::sqrt(size);
   const double time_s = scene.random.log_uniform(1800, 10000);
   const std::vector<Index> cells = scene.machine.cells(lump);
@@ -306,11 +310,8 @@ inline Effect missing_expansion(Scene scene, double size) {
 
 /// A gap that closes: quadratic at first, linear when closed, 2 s^2 log cosh(dT/s).
 inline Effect nonlinear_expansion(Scene scene, double size) {
-  Effect effect;
-  effect.name = "nonlinear-expansion";
-  const auto group = warm_group(scene.machine);
-  const Index lump = scene.random.pick(group);
-  effect.places = names(scene.machine, scene.machine.around(lump));
+  const Index lump = warm_lump(scene);
+  Effect effect = at_lump(scene, "nonlinear-expansion", lump);
   const std::vector<Index> cells = scene.machine.cells(lump);
   const double closes_K = scene.random.uniform(20, 60), k = scene.random.sign() * .02 * size;
   effect.displacement = [=](std::size_t, const Experiment&, const Matrix& theta, Vector& course) {

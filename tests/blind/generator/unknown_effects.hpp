@@ -35,11 +35,8 @@ inline HeatFlow pulses(const std::vector<Vector>& courses, const std::vector<Ind
 
 /// A chiller of its own with hysteresis: the supply is a sawtooth that no column shows.
 inline Effect chiller(Scene scene, double size) {
-  Effect effect;
-  effect.name = "x-chiller";
-  const auto group = warm_group(scene.machine);
-  const Index lump = scene.random.pick(group);
-  effect.places = names(scene.machine, scene.machine.around(lump));
+  const Index lump = warm_lump(scene);
+  Effect effect = at_lump(scene, "x-chiller", lump);
   const double period_s = scene.random.uniform(20, 70) * 60, width_K = scene.random.uniform(3, 8);
   std::vector<Vector> supply;
   for (const Experiment& batch : scene.campaign.batches) {
@@ -62,20 +59,16 @@ inline Effect chiller(Scene scene, double size) {
 
 /// Tool changes: short bursts of heat at the front.
 inline Effect tool_change(Scene scene, double size) {
-  Effect effect;
-  effect.name = "x-tool-change";
   const Index lump = warm_group(scene.machine).front();
-  effect.places = names(scene.machine, scene.machine.around(lump));
+  Effect effect = at_lump(scene, "x-tool-change", lump);
   effect.heat = pulses(unlogged_events(scene, 600, 4800, .2), scene.machine.cells(lump), 150 * size);
   return effect;
 }
 
 /// A pump that nobody logs.
 inline Effect hydraulics(Scene scene, double size) {
-  Effect effect;
-  effect.name = "x-hydraulics";
   const Index lump = visible_lump(scene);
-  effect.places = names(scene.machine, scene.machine.around(lump));
+  Effect effect = at_lump(scene, "x-hydraulics", lump);
   effect.heat = pulses(unlogged_events(scene, 1500, 6000, .45), scene.machine.cells(lump), 80 * size);
   return effect;
 }
@@ -97,14 +90,20 @@ inline Effect door(Scene scene, double size) {
   return effect;
 }
 
-/// Friction that falls as the oil warms: Walther's viscosity of an ISO VG 32 oil to the power 2/3.
-inline Effect viscosity(Scene scene, double size) {
+/// At the first heat source, the spindle's front bearings; the lumps that it heats count as right too.
+inline Effect at_front_bearings(const Scene& scene, const std::string& name) {
   Effect effect;
-  effect.name = "x-viscosity";
-  const Source source = scene.machine.plant.sources[0];
-  effect.places = {source.name};
+  effect.name = name;
+  effect.places = {scene.machine.plant.sources[0].name};
   for (const auto& [lump, share] : scene.machine.lumped.sources[0].into)
     effect.places.push_back(scene.machine.name(lump));
+  return effect;
+}
+
+/// Friction that falls as the oil warms: Walther's viscosity of an ISO VG 32 oil to the power 2/3.
+inline Effect viscosity(Scene scene, double size) {
+  Effect effect = at_front_bearings(scene, "x-viscosity");
+  const Source source = scene.machine.plant.sources[0];
   effect.driver = "temperature";
   const Index column = scene.input(source.input);
   const auto oil = [](double degC) {
@@ -122,12 +121,8 @@ inline Effect viscosity(Scene scene, double size) {
 
 /// Cutting: the load of the spindle is not logged, its heat goes up and down.
 inline Effect cutting(Scene scene, double size) {
-  Effect effect;
-  effect.name = "x-cutting";
+  Effect effect = at_front_bearings(scene, "x-cutting");
   const Source source = scene.machine.plant.sources[0];
-  effect.places = {source.name};
-  for (const auto& [lump, share] : scene.machine.lumped.sources[0].into)
-    effect.places.push_back(scene.machine.name(lump));
   const auto load = unlogged_events(scene, 1200, 4800, .5);
   const Index column = scene.input(source.input);
   effect.heat = [=](const Instant& now, Vector& flow) {
