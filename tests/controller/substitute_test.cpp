@@ -2,31 +2,13 @@
 #include <iostream>
 
 #include "support/catch.hpp"
-#include "support/numeric_csv.hpp"
+#include "support/vcenter55.hpp"
 #include "thermfit/controller/compensator.hpp"
 #include "thermfit/controller/settings_for.hpp"
 #include "thermfit/fit/train.hpp"
 #include "thermfit/number.hpp"
 
 using namespace thermfit;
-
-namespace {
-
-Campaign vcenter55() {
-  Campaign campaign;
-  for (int b = 1; b <= 12; ++b) {
-    Batch batch;
-    batch.name = (b < 10 ? "K0" : "K") + std::to_string(b);
-    const NumericCsv csv(std::string(THERMFIT_SOURCE_DIR) + "/data/vcenter55/" + batch.name + ".csv");
-    batch.temperatures = {{"T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10"}, csv.columns("T1", "T10")};
-    batch.errors = {{"Z"}, csv.columns("Z", "Z")};
-    batch.time_s = Vector::LinSpaced(batch.rows(), 0, 300. * static_cast<double>(batch.rows() - 1));
-    campaign.push_back(batch);
-  }
-  return campaign;
-}
-
-}  // namespace
 
 TEST_CASE("with any one sensor lost the compensator leaves the error that was printed at fit time", "[controller]") {
   const Campaign campaign = vcenter55();

@@ -1,15 +1,13 @@
 // Coefficients, latent variables and errors against R pls, scikit-learn, 50-digit arithmetic and NIST.
-#include <fstream>
-#include <nlohmann/json.hpp>
-
 #include "support/catch.hpp"
 #include "support/numeric_csv.hpp"
 #include "support/shared_data.hpp"
 #include "thermfit/fit/fit.hpp"
 #include "thermfit/fit/jackknife.hpp"
+#include "thermfit/io/json_node.hpp"
 
 using namespace thermfit;
-using nlohmann::json;
+using json = thermfit::Json;
 
 namespace {
 
@@ -25,18 +23,18 @@ const std::vector<DataSet> data_sets{{"yarn", "NIR1", "NIR268", "density", "dens
 
 struct Reference {
   Matrix x, y;
+  Moments moments;
   Reference(const std::string& folder, const DataSet& set) {
     const NumericCsv csv(folder + "/pls_reference/" + set.name + ".csv");
     x = csv.columns(set.first_x, set.last_x);
     y = csv.columns(set.first_y, set.last_y);
+    moments = Moments(x, y);
   }
 };
 
-json read_json(const std::string& path) {
-  std::ifstream file(path);
-  INFO(path);
-  REQUIRE(file);
-  return json::parse(file);
+/// What `by` says of a data set.
+json reference_of(const std::string& folder, const DataSet& set, const std::string& by) {
+  return read_json(folder + "/pls_reference/ref_" + set.name + "_" + by + ".json");
 }
 
 /// A matrix from nested lists, or one column from a flat list.
@@ -77,15 +75,14 @@ TEST_CASE("PLS1 agrees with 50-digit arithmetic, from moments and from rows", "[
   for (const DataSet& set : data_sets) {
     if (set.name == "oliveoil" || set.name == "linnerud") continue;
     const Reference data(folder, set);
-    const Moments moments(data.x, data.y);
     double worst_rows = 0, worst_moments = 0;
-    const json reference = read_json(folder + "/pls_reference/ref_" + set.name + "_exact.json");
+    const json reference = reference_of(folder, set, "exact");
     for (const json& exact : reference.at("fits")) {
       const FitOptions how =
           options(exact.at("scale").get<bool>() ? Scaling::both : Scaling::centre, exact.at("ncomp").get<Index>());
       const Matrix b = matrix(exact.at("B"));
       worst_rows = std::max(worst_rows, difference(fit_pls(data.x, data.y, how).model.coefficients, b));
-      worst_moments = std::max(worst_moments, difference(fit_pls(moments, how).model.coefficients, b));
+      worst_moments = std::max(worst_moments, difference(fit_pls(data.moments, how).model.coefficients, b));
     }
     CAPTURE(set.name, worst_rows, worst_moments);
 
@@ -98,8 +95,7 @@ TEST_CASE("PLS agrees with R kernelpls and oscorespls: coefficients and every la
   REQUIRE_SHARED_DATA(folder);
   for (const DataSet& set : data_sets) {
     const Reference data(folder, set);
-    const Moments moments(data.x, data.y);
-    const json reference = read_json(folder + "/pls_reference/ref_" + set.name + "_R.json");
+    const json reference = reference_of(folder, set, "R");
     for (const json& theirs : reference.at("fits")) {
       const auto method = theirs.at("method").get<std::string>();
       const bool pcr = method == "svdpc";
@@ -113,7 +109,7 @@ TEST_CASE("PLS agrees with R kernelpls and oscorespls: coefficients and every la
         CAPTURE(a);
         const FitOptions how = options(scaling, a);
         const LinearFit rows = pcr ? fit_pcr(data.x, data.y, how) : fit_pls(data.x, data.y, how);
-        const LinearFit mom = pcr ? fit_pcr(moments, how) : fit_pls(moments, how);
+        const LinearFit mom = pcr ? fit_pcr(data.moments, how) : fit_pls(data.moments, how);
         REQUIRE(rows.components == a);
         CHECK(difference(rows.model.coefficients, matrix(c.at("B"))) < 1e-9);
         CHECK(difference(mom.model.coefficients, matrix(c.at("B"))) < 1e-9);
@@ -148,8 +144,7 @@ TEST_CASE("PLS with both blocks standardised agrees with scikit-learn and ikpls"
   REQUIRE_SHARED_DATA(folder);
   for (const DataSet& set : data_sets) {
     const Reference data(folder, set);
-    const Moments moments(data.x, data.y);
-    const json reference = read_json(folder + "/pls_reference/ref_" + set.name + "_sklearn.json");
+    const json reference = reference_of(folder, set, "sklearn");
     int compared = 0;
     for (const json& theirs : reference.at("fits")) {
       const auto algorithm = theirs.at("algorithm").get<std::string>();
@@ -162,7 +157,7 @@ TEST_CASE("PLS with both blocks standardised agrees with scikit-learn and ikpls"
       // With several responses scikit-learn iterates until the square of a step is below 1e-15: 3e-8 of a weight.
       const double close = data.y.cols() > 1 && theirs.contains("tol") ? 1e-7 : 1e-9;
       CHECK(difference(fit_pls(data.x, data.y, how).model.coefficients, b) < close);
-      CHECK(difference(fit_pls(moments, how).model.coefficients, b) < close);
+      CHECK(difference(fit_pls(data.moments, how).model.coefficients, b) < close);
       ++compared;
     }
     CHECK(compared >= 18);
@@ -173,7 +168,7 @@ TEST_CASE("squared errors on left-out segments agree with R's cross-validation",
   REQUIRE_SHARED_DATA(folder);
   for (const DataSet& set : data_sets) {
     const Reference data(folder, set);
-    const json reference = read_json(folder + "/pls_reference/ref_" + set.name + "_R.json");
+    const json reference = reference_of(folder, set, "R");
     for (const json& theirs : reference.at("fits")) {
       const auto method = theirs.at("method").get<std::string>();
       if (theirs.at("scaleX").get<bool>() || (method != "kernelpls" && method != "svdpc")) continue;
@@ -222,7 +217,7 @@ TEST_CASE("jackknife over single rows agrees with R jack.test", "[fit]") {
   for (const DataSet& set : data_sets) {
     if (set.name == "gasoline" || set.name == "yarn") continue;  // hundreds of columns: the time of a suite
     const Reference data(folder, set);
-    const json reference = read_json(folder + "/pls_reference/ref_" + set.name + "_R.json").at("jackknife");
+    const json reference = reference_of(folder, set, "R").at("jackknife");
     std::vector<Moments> batches;
     for (Index r = 0; r < data.x.rows(); ++r) batches.emplace_back(data.x.row(r), data.y.row(r));
     const FitOptions how = options(Scaling::centre, reference.at("ncomp").get<Index>());
@@ -238,7 +233,7 @@ TEST_CASE("jackknife over single rows agrees with R jack.test", "[fit]") {
 TEST_CASE("least squares agrees with R lm: coefficients, sigma and degrees of freedom", "[fit]") {
   REQUIRE_SHARED_DATA(folder);
   const Reference data(folder, data_sets.back());
-  const json reference = read_json(folder + "/pls_reference/ref_thermalW1b1_lm_R.json");
+  const json reference = reference_of(folder, data_sets.back(), "lm_R");
   const Matrix coefficients = matrix(reference.at("coef"));
   for (const LinearFit& fit : {fit_mlr(data.x, data.y), fit_mlr(Moments(data.x, data.y))}) {
     CHECK(difference(fit.model.coefficients, coefficients.bottomRows(10)) < 1e-10);

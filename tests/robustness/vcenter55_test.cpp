@@ -1,5 +1,6 @@
+#include "support/vcenter55.hpp"
+
 #include "support/catch.hpp"
-#include "support/numeric_csv.hpp"
 #include "thermfit/fit/fit.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/robustness/cross_batch.hpp"
@@ -8,26 +9,8 @@
 
 using namespace thermfit;
 
-namespace {
-
-std::vector<Observations> vcenter55() {
-  std::vector<Observations> batches;
-  for (int b = 1; b <= 12; ++b) {
-    const std::string name = (b < 10 ? "K0" : "K") + std::to_string(b);
-    const NumericCsv csv(std::string(THERMFIT_SOURCE_DIR) + "/data/vcenter55/" + name + ".csv");
-    Batch batch;
-    batch.name = name;
-    batch.temperatures = {{"T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10"}, csv.columns("T1", "T10")};
-    batch.errors = {{"Z"}, csv.columns("Z", "Z")};
-    batches.push_back(observe(batch));
-  }
-  return batches;
-}
-
-}  // namespace
-
 TEST_CASE("the sweep over points of vcenter55 gives the reference row to the printed digits", "[robustness]") {
-  const std::vector<Observations> batches = vcenter55();
+  const std::vector<Observations> batches = observe(vcenter55());
   FitOptions options;
   options.components = ComponentRule::fixed(1);
   const auto steps = sweep_points(batches, ByCorrelation{}, [&](const Moments& m) { return fit_pls(m, options); });
@@ -44,7 +27,7 @@ TEST_CASE("the sweep over points of vcenter55 gives the reference row to the pri
 
 TEST_CASE("least squares on two FCGR points of vcenter55 gives the reference row to the printed digits",
           "[robustness]") {
-  const SweepStep step = cross_batch(vcenter55(), ByFcgr{}, 2, [](const Moments& m) { return fit_mlr(m); });
+  const SweepStep step = cross_batch(observe(vcenter55()), ByFcgr{}, 2, [](const Moments& m) { return fit_mlr(m); });
   CHECK(fixed_text(step.robustness[0].per_model.S_mean, 2) == "6.91");
   CHECK(fixed_text(step.robustness[0].per_model.S_std, 2) == "1.07");
 }
