@@ -36,7 +36,7 @@ char separator_of(const std::string& line) {
   return best;
 }
 
-std::string quoted(const std::string& name) {
+std::string csv_text(const std::string& name) {
   return name.find_first_of(",\"") == std::string::npos ? name : '"' + name + '"';
 }
 
@@ -112,12 +112,12 @@ void LiveCompensation::lose_readings() {
 
 std::string LiveCompensation::answer_header() const {
   std::string text = "line";
-  for (const std::string& name : errors_) text += ",offset_" + quoted(name) + "_um";
+  for (const std::string& name : errors_) text += ",offset_" + csv_text(name) + "_um";
   text += ",state,status,sensor,fault";
   if (!shadow_) return text;
-  for (const std::string& name : errors_) text += ",shadow_" + quoted(name) + "_um";
+  for (const std::string& name : errors_) text += ",shadow_" + csv_text(name) + "_um";
   for (std::size_t j = 0; j < errors_.size(); ++j)
-    if (measured_[j].column) text += ",remaining_" + quoted(errors_[j]) + "_um";
+    if (measured_[j].column) text += ",remaining_" + csv_text(errors_[j]) + "_um";
   return text;
 }
 
@@ -127,7 +127,7 @@ std::string LiveCompensation::answer(std::size_t line_number) {
   for (std::size_t j = 0; j < errors_.size(); ++j)
     text += ',' + (shadow_ ? "0" : exact_text(device_.offset_um()[j] + 0.0));
   text += std::string(",") + state_name(status.state()) + ',' + std::to_string(status.word) + ',';
-  if (status.sensor() > 0) text += quoted(temperatures_[static_cast<std::size_t>(status.sensor() - 1)]);
+  if (status.sensor() > 0) text += csv_text(temperatures_[static_cast<std::size_t>(status.sensor() - 1)]);
   text += std::string(",") + fault_name(status.fault());
   if (!shadow_) return text;
   for (const double offset_um : device_.offset_um()) text += ',' + exact_text(offset_um + 0.0);

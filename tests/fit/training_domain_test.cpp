@@ -6,13 +6,13 @@
 #include "thermfit/fit/mlr.hpp"
 #include "thermfit/fit/pcr.hpp"
 #include "thermfit/fit/pls.hpp"
-#include "thermfit/robustness/outside_domain.hpp"
+#include "thermfit/model/outside_domain.hpp"
 
 using namespace thermfit;
 
 namespace {
 
-struct Setting {
+struct Mixture {
   Index points, sources, rows;
   double noise;
 };
@@ -32,7 +32,7 @@ struct AlarmRates {
 
 /// Share of new rows beyond the 1 % limits, averaged over training sets.
 template <class Fitter>
-AlarmRates alarm_rates(const Setting& setting, const Fitter& fitter, int trainings = 1000, Index fresh = 300) {
+AlarmRates alarm_rates(const Mixture& setting, const Fitter& fitter, int trainings = 1000, Index fresh = 300) {
   std::mt19937_64 generator(7);
   AlarmRates rates;
   for (int i = 0; i < trainings; ++i) {
@@ -52,8 +52,8 @@ AlarmRates alarm_rates(const Setting& setting, const Fitter& fitter, int trainin
 }  // namespace
 
 TEST_CASE("new observations pass the 1 % limits in .9 to 1.1 % of the cases", "[fit]") {
-  for (const Setting& setting :
-       {Setting{2, 1, 79, .3}, Setting{10, 2, 158, .5}, Setting{10, 2, 948, .5}, Setting{22, 4, 300, .5}}) {
+  for (const Mixture& setting :
+       {Mixture{2, 1, 79, .3}, Mixture{10, 2, 158, .5}, Mixture{10, 2, 948, .5}, Mixture{22, 4, 300, .5}}) {
     FitOptions options;
     options.components = ComponentRule::fixed(setting.sources);
     const AlarmRates pls = alarm_rates(setting, [&](const Moments& m) { return fit_pls(m, options); });

@@ -71,8 +71,8 @@ inline ThermalNetwork with_complete_effects(ThermalNetwork network, const Effect
     std::vector<std::pair<std::string, double>> complete;
     for (const EffectParameter& one : known) complete.emplace_back(one.name, added.value(one.name, one.mean));
     for (const auto& [name, value] : added.parameters) {
-      const bool used = std::any_of(known.begin(), known.end(), [&](const auto& one) { return one.name == name; });
-      if (used) continue;
+      const auto is_it = [&name = name](const EffectParameter& one) { return one.name == name; };
+      if (std::any_of(known.begin(), known.end(), is_it)) continue;
       std::string allowed;
       for (const EffectParameter& one : known) allowed += (allowed.empty() ? "" : ", ") + one.name;
       throw Error("effects[" + std::to_string(e) + "]." + name, "no such parameter of " + added.effect, allowed,

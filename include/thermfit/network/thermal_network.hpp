@@ -79,9 +79,9 @@ struct ThermalNetwork {
     std::vector<std::pair<std::string, double>> parameters;
 
     /// Value of a parameter by name; `fallback` where it is absent.
-    double value(const std::string& name, double fallback = 0) const {
+    double value(const std::string& parameter, double fallback = 0) const {
       for (const auto& [key, number] : parameters)
-        if (key == name) return number;
+        if (key == parameter) return number;
       return fallback;
     }
   };
