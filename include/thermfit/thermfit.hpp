@@ -17,7 +17,7 @@
 #include "thermfit/network/simulate.hpp"
 #include "thermfit/robustness/cross_batch.hpp"
 #include "thermfit/robustness/leave_one_batch_out.hpp"
-#include "thermfit/robustness/outside_domain.hpp"
+#include "thermfit/model/outside_domain.hpp"
 #include "thermfit/select/correlation.hpp"
 #include "thermfit/select/fcgr.hpp"
 #include "thermfit/select/rule.hpp"

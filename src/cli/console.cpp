@@ -10,20 +10,6 @@
 #include "thermfit/io/atomic_file.hpp"
 
 namespace thermfit::cli {
-namespace {
-
-/// Every byte to a file descriptor, or the reason why not.
-void write_all(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(descriptor, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0 && errno == EPIPE) return;  // the reader had enough (head); that is its right
-    if (written <= 0) throw Error("standard output", std::strerror(errno), "", "the result is not complete");
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-}  // namespace
 
 void Console::note(std::string_view text) const {
   progress({});
@@ -47,7 +33,9 @@ std::string Console::strong(std::string_view text) const {
 }
 
 void Console::flush() {
-  write_all(STDOUT_FILENO, result_);
+  // A closed pipe: the reader had enough (head); that is its right.
+  if (!detail::write_all(STDOUT_FILENO, result_) && errno != EPIPE)
+    throw Error("standard output", std::strerror(errno), "", "the result is not complete");
   result_.clear();
 }
 

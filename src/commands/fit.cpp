@@ -42,9 +42,7 @@ void print_jackknife(const Campaign& campaign, const TrainedModel& model, const 
   std::vector<Moments> batches;
   for (const Observations& batch : observe(campaign, plan.reference))
     batches.push_back(plan.points.empty() ? batch.moments : batch.moments.subset(plan.points));
-  FitOptions same = plan.options;
-  if (model.components > 0) same.components = ComponentRule::fixed(model.components);
-  same.ridge_lambda = model.ridge_lambda;
+  const FitOptions same = settled(plan.options, model);
   const CoefficientSpread spread = jackknife(batches, [&](const Moments& m) { return fit(plan.method, m, same); });
   const Matrix half = spread.half_width(.95), p = spread.p_values();
   console.line("\nCoefficients with 95 % intervals from leaving batches out, um/K:");

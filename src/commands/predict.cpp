@@ -28,8 +28,8 @@ struct Predicted {
 };
 
 std::string domain_word(const TrainedModel& model, const DomainDistance<>& distance) {
-  if (beyond(model.domain, distance, 99)) return "beyond99";
-  return beyond(model.domain, distance, 95) ? "beyond95" : "inside";
+  if (outside_limits(model.domain, distance, 99).any()) return "beyond99";
+  return outside_limits(model.domain, distance, 95).any() ? "beyond95" : "inside";
 }
 
 void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {

@@ -41,8 +41,8 @@ std::string plural(std::size_t count, const std::string& one, const std::string&
   return count == 0 ? "no " + many : std::to_string(count) + ' ' + (count == 1 ? one : many);
 }
 
-/// JSON has no NaN: what is not a number is null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+/// JSON has no NaN: what is not a number is null. Zero has no sign.
+Json number(double value) { return std::isfinite(value) ? Json(value + 0.) : Json(nullptr); }
 
 Json channel_json(const std::string& name, const std::string& role, const std::string& unit,
                   const Eigen::Ref<const Vector>& column) {
@@ -60,8 +60,8 @@ Json channel_json(const std::string& name, const std::string& role, const std::s
           {"lowest", number(any ? scale.lowest : none)},
           {"mean", number(any ? sum / static_cast<double>(series.size()) : none)},
           {"highest", number(any ? scale.highest : none)},
-          {"resolution", scale.resolution},
-          {"noise", scale.noise}};
+          {"resolution", number(scale.resolution)},
+          {"noise", number(scale.noise)}};
 }
 
 Json batch_json(const CheckedBatch& one) {
@@ -101,7 +101,7 @@ Json batch_json(const CheckedBatch& one) {
 std::string check_text(const std::vector<CheckedBatch>& checked) {
   Table overview({"batch", "rows", "min", "step s", "temperatures degC", "errors um", "findings"});
   Table table({"batch", "channel", "rule", "rows", "figure", "limit", "unit"});
-  for (const std::size_t column : {1, 2}) table.left(column);
+  for (const std::size_t column : {1U, 2U}) table.left(column);
   table.left(6);
   std::size_t findings = 0, faulty = 0;
   std::string notes;

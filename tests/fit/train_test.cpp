@@ -3,7 +3,7 @@
 #include <random>
 
 #include "support/catch.hpp"
-#include "thermfit/robustness/outside_domain.hpp"
+#include "thermfit/model/outside_domain.hpp"
 
 using namespace thermfit;
 

@@ -22,6 +22,15 @@ struct TrainingPlan {
   bool row_wise = false;  ///< QR and NIPALS on all rows instead of moments, for ill-conditioned data
 };
 
+/// `options` with what `chosen` (a fit or a trained model) settled on: components and penalty are taken over, not
+/// chosen anew, by what is fitted beside it.
+template <class Chosen>
+FitOptions settled(FitOptions options, const Chosen& chosen) {
+  if (chosen.components > 0) options.components = ComponentRule::fixed(chosen.components);
+  options.ridge_lambda = chosen.ridge_lambda;
+  return options;
+}
+
 /// Models that stand in for each lost sensor: `fitter` on the moments of the others, coefficient of the lost one zero.
 /// None for a single sensor.
 template <class Fitter>
@@ -102,9 +111,7 @@ inline TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {
   }
   trained.errors = first.errors.names;
   trained.envelope = sensor_envelope(campaign, trained.temperatures);
-  FitOptions same = plan.options;  // a substitute is fitted as the model was, not chosen anew
-  if (fitted.components > 0) same.components = ComponentRule::fixed(fitted.components);
-  same.ridge_lambda = fitted.ridge_lambda;
+  const FitOptions same = settled(plan.options, fitted);
   trained.substitutes = substitute_models(all, [&](const Moments& m) { return fit(plan.method, m, same); });
   for (const Batch& batch : campaign) trained.batches.push_back({batch.name, batch.rows(), batch.digest});
   return trained;

@@ -17,13 +17,15 @@ namespace thermfit {
 
 namespace detail {
 
-inline void write_descriptor(int descriptor, std::string_view text, const std::string& path) {
+/// Every byte to a file descriptor; false, with the reason in errno, where that fails.
+inline bool write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw Error(path, std::strerror(errno), "", "the file was not changed");
+    if (written <= 0) return false;
     text.remove_prefix(static_cast<std::size_t>(written));
   }
+  return true;
 }
 
 }  // namespace detail
@@ -39,7 +41,7 @@ inline void write_atomically(const std::string& path, std::string_view text) {
   const int descriptor = replaces_file ? ::mkstemp(target.data()) : ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0) throw Error(path, std::strerror(errno), "", "choose a folder that exists and can be written");
   try {
-    detail::write_descriptor(descriptor, text, path);
+    if (!detail::write_all(descriptor, text)) throw Error(path, std::strerror(errno), "", "the file was not changed");
     if (replaces_file) {
       const mode_t mask = ::umask(0);
       ::umask(mask);

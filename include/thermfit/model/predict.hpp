@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "thermfit/error.hpp"
+#include "thermfit/model/outside_domain.hpp"
 #include "thermfit/model/trained_model.hpp"
 
 namespace thermfit {
@@ -15,22 +16,12 @@ struct BatchPrediction {
   std::vector<DomainDistance<>> distances;  ///< per row
 
   /// Share of rows beyond the 95 % or 99 % limit of `domain`, 0 … 1.
-  double share_beyond(const TrainingDomain<>& domain, int percent) const;
+  double share_beyond(const TrainingDomain<>& domain, int percent) const {
+    double count = 0;
+    for (const DomainDistance<>& distance : distances) count += outside_limits(domain, distance, percent).any();
+    return distances.empty() ? 0 : count / static_cast<double>(distances.size());
+  }
 };
-
-/// Whether a sample lies beyond the 95 % or 99 % limit (T2 or SPE) of `domain`. A value that is not a number does.
-inline bool beyond(const TrainingDomain<>& domain, const DomainDistance<>& distance, int percent) {
-  const bool strict = percent == 95;
-  const double t2 = strict ? domain.t2_limit_95 : domain.t2_limit_99;
-  const double spe = strict ? domain.spe_limit_95 : domain.spe_limit_99;
-  return !(distance.t2 <= t2) || (spe > 0 && !(distance.spe <= spe));
-}
-
-inline double BatchPrediction::share_beyond(const TrainingDomain<>& domain, int percent) const {
-  double count = 0;
-  for (const DomainDistance<>& distance : distances) count += beyond(domain, distance, percent) ? 1 : 0;
-  return distances.empty() ? 0 : count / static_cast<double>(distances.size());
-}
 
 /// Temperatures of `batch` as `model` wants them: its points, in its order, as rise or absolute. Throws Error on a
 /// point the batch lacks, naming those there are.
@@ -56,7 +47,8 @@ inline BatchPrediction predict(const TrainedModel& model, const Batch& batch) {
   const Matrix inputs = model_inputs(model, batch);
   BatchPrediction result;
   result.errors = model.model.predict_rows(inputs);
-  for (Index i = 0; i < inputs.rows(); ++i) result.distances.push_back(model.domain.distance(inputs.row(i).transpose()));
+  for (Index i = 0; i < inputs.rows(); ++i)
+    result.distances.push_back(model.domain.distance(inputs.row(i).transpose()));
   Matrix measured(inputs.rows(), static_cast<Index>(model.errors.size()));
   for (std::size_t e = 0; e < model.errors.size(); ++e) {
     const Index column = batch.errors.find(model.errors[e]);

@@ -5,7 +5,7 @@
 
 namespace thermfit {
 
-/// How a row lies to a model's training domain, at the 99 % limits.
+/// How a row lies to a model's training domain.
 struct OutsideDomain {
   bool range = false;  ///< a point below its lowest or above its highest training value
   bool t2 = false;     ///< familiar relations between the points, but further out
@@ -13,15 +13,22 @@ struct OutsideDomain {
   bool any() const { return range || t2 || spe; }
 };
 
-/// Judges one sample of the model's temperatures (sensors long). A limit of 0 means that there is nothing to judge.
+/// Judges a distance at the 95 % or 99 % limits, its range apart. A limit of 0 means that there is nothing to judge; a
+/// distance that is not a number lies outside.
+inline OutsideDomain outside_limits(const TrainingDomain<>& domain, const DomainDistance<>& distance, int percent) {
+  const auto beyond = [](double value, double limit) { return limit > 0 && !(value <= limit); };
+  OutsideDomain outside;
+  outside.t2 = beyond(distance.t2, percent == 95 ? domain.t2_limit_95 : domain.t2_limit_99);
+  outside.spe = beyond(distance.spe, percent == 95 ? domain.spe_limit_95 : domain.spe_limit_99);
+  return outside;
+}
+
+/// Judges one sample of the model's temperatures (sensors long) at the 99 % limits and by range.
 template <class Temperatures>
 OutsideDomain outside_domain(const TrainingDomain<>& domain, const Eigen::MatrixBase<Temperatures>& temperatures) {
-  const DomainDistance<> distance = domain.distance(temperatures);
-  OutsideDomain outside;
+  OutsideDomain outside = outside_limits(domain, domain.distance(temperatures), 99);
   outside.range =
       (temperatures.array() < domain.lowest.array()).any() || (temperatures.array() > domain.highest.array()).any();
-  outside.t2 = domain.t2_limit_99 > 0 && distance.t2 > domain.t2_limit_99;
-  outside.spe = domain.spe_limit_99 > 0 && distance.spe > domain.spe_limit_99;
   return outside;
 }
 

@@ -1,3 +1,0 @@
-#pragma once
-
-#include "thermfit/number.hpp"  // moved; this file goes
