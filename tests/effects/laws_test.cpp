@@ -57,8 +57,9 @@ Batch refined(const Batch& coarse, Index parts) {
     const double f = static_cast<double>(k % parts) / static_cast<double>(parts);
     fine.time_s(k) = (1 - f) * coarse.time_s(a) + f * coarse.time_s(b);
     fine.inputs.values.row(k) = coarse.inputs.values.row(a);
-    fine.temperatures.values.row(k) =
-        (1 - f) * coarse.temperatures.values.row(a) + f * coarse.temperatures.values.row(b);
+    for (Index c = 0; c < coarse.temperatures.values.cols(); ++c)
+      fine.temperatures.values(k, c) =
+          (1 - f) * coarse.temperatures.values(a, c) + f * coarse.temperatures.values(b, c);
   }
   return fine;
 }
