@@ -197,7 +197,8 @@ TEST_CASE("a fault planted into a thermometer of a measured lathe is named at th
   const std::vector<Planted> faults{{2, "rear", "sensor-lag", later(8)},     {5, "front", "sensor-lag", later(16)},
                                     {2, "rear", "sensor-offset", offset(4)}, {3, "wall", "sensor-offset", offset(4)},
                                     {2, "rear", "sensor-gain", gain(1.1)},   {3, "wall", "sensor-gain", gain(1.25)},
-                                    {2, "rear", "sensor-drift", drift(4)},   {3, "wall", "sensor-drift", drift(4)}};
+                                    {5, "front", "sensor-gain", gain(1.25)}, {2, "rear", "sensor-drift", drift(4)},
+                                    {3, "wall", "sensor-drift", drift(4)}};
   for (const Planted& one : faults) {
     const nlohmann::json said = lathe.with(one.column, one.fault);
     CAPTURE(one.sensor, one.effect, said.at("verdict"), said.at("effects").dump());

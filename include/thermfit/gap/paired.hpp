@@ -285,15 +285,18 @@ class PairedDiagnosis {
     return after > 15 * outputs && after > .3 * before;
   }
 
-  /// The gap that is told must shrink by a fifth on batches left out (an offset: against the simulator as given), else
-  /// the effect explains something else.
+  /// The gap that is told must shrink on batches left out (an offset: against the simulator as given), else the effect
+  /// explains something else.
   bool told_gap_shrinks() const {
     Diagnosis trial;
     trial.effects = result_.effects;
     PairedAccount(campaign_, first_, channels_, told_, options_.seed).tell(trial);
     const StagedGap& rms = trial.gap.rms;
-    return rms.with_effect < .8 * (trial.effects[0].effect == "sensor-offset" ? rms.as_simulated : rms.calibrated);
+    return rms.with_effect < (trial.effects[0].effect == "sensor-offset" ? rms.as_simulated : rms.calibrated);
   }
+
+  /// What a thermometer may be off because of where it sits; beside a gap without a name, smaller faults are not told.
+  static constexpr double placement_tolerance_K = .5;
 
   /// A fault of a thermometer shows in its own reading alone, so that reading judges it whatever has no name elsewhere.
   /// Names the decisive one that closes a third of its own gap and beats there whatever else could act on that reading.
@@ -306,7 +309,7 @@ class PairedDiagnosis {
       const bool sensor = signature.stage == Stage::measurement && signature.channels.size() == 1 &&
                           signature.channels[0] < campaign_.temperatures;
       if (score.gain < options_.decisive_nats) break;
-      if (!sensor || !score.implausible.empty() || !matters(score)) continue;
+      if (!sensor || !score.implausible.empty() || score.channels[0].contribution < placement_tolerance_K) continue;
       const Index own = signature.channels[0];
       std::vector<Candidate> rivals = candidates_in(own);
       if (rivals.empty() || rivals[0].score != &score) continue;
