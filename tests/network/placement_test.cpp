@@ -44,8 +44,8 @@ TEST_CASE("a placed sensor reads its share of the way to a neighbour") {
   const EffectLibrary none;
   const Simulation run = simulate(network, {one_hour(network)}, none)[0];
   const Matrix& node = run.nodes_degC;
-  const Vector expected = (node.col(1) + 0.3 * (node.col(0) - node.col(1)) - 0.2 * (node.col(2) - node.col(1))).array() +
-                          0.1;
+  const Vector expected =
+      (node.col(1) + 0.3 * (node.col(0) - node.col(1)) - 0.2 * (node.col(2) - node.col(1))).array() + 0.1;
   CHECK((run.channels.col(0) - expected).cwiseAbs().maxCoeff() < 1e-12);
 }
 
@@ -77,4 +77,32 @@ TEST_CASE("sensitivities pass through the placement and reach its shares") {
 TEST_CASE("without placements nothing but the offset of a sensor can be calibrated") {
   for (const Parameter& one : calibration_parameters(bar(), EffectLibrary{}))
     CHECK(one.kind != Parameter::Kind::placement);
+}
+
+TEST_CASE("a late reading lacks its response times the rate at which its node was changing") {
+  ThermalNetwork network = bar();
+  const EffectLibrary none;
+  const Simulation prompt = simulate(network, {one_hour(network)}, none)[0];
+  network.sensors[0].response_s = 40;
+  const Simulation late = simulate(network, {one_hour(network)}, none)[0];
+  CHECK(late.channels(0, 0) == prompt.channels(0, 0));  // at rest before the first sample
+  for (Index k = 1; k < 61; ++k) {
+    const auto degC = prompt.nodes_degC.row(k);
+    const double rate = (2.0 * (degC(0) - degC(1)) + 1.5 * (degC(2) - degC(1)) + 0.2 * (20 - degC(1))) /
+                        network.nodes[1].capacity_J_per_K;
+    CHECK(late.channels(k, 0) == Approx(prompt.channels(k, 0) - 40 * rate).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("the response of a reading may move by a share of its node's time constant") {
+  const ThermalNetwork network = bar();
+  CHECK(network.time_constant_s(1) == Approx(600 / 3.7));
+  const EffectLibrary none;
+  const std::vector<Parameter> parameters = calibration_parameters(network, none);
+  CHECK(parameters.back().kind == Parameter::Kind::response);
+  CHECK(parameters.back().sd == Approx(0.05 * 600 / 3.7));
+  ThermalNetwork insulated = network;
+  insulated.links.clear();
+  insulated.nodes[1].ambient_W_per_K = 0;
+  CHECK(insulated.time_constant_s(1) == 0);
 }

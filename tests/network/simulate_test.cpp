@@ -133,7 +133,7 @@ TEST_CASE("sensitivities of every parameter agree with central differences", "[n
   if (measured_start) network.initial.rule = ThermalNetwork::Initial::Rule::measured;
   const std::vector<Excitation> drive = excitations_of(network, {example_batch(0), example_batch(1)});
   const std::vector<Parameter> parameters = calibration_parameters(network, no_effects);
-  REQUIRE(parameters.size() == 5 + 5 + 4 + 2 + 4 + 4);
+  REQUIRE(parameters.size() == 5 + 5 + 4 + 2 + 4 + 4 + 4);
   const std::vector<Simulation> exact = simulate(network, drive, no_effects, parameters);
   const Vector values = values_of(network, parameters);
   for (std::size_t j = 0; j < parameters.size(); ++j) {

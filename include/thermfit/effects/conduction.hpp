@@ -80,15 +80,17 @@ class MissingLink : public Effect {
   }
 };
 
-/// A hidden mass C behind a node through G, which remembers: it starts at the temperature of the node.
+/// A hidden mass C behind the place through G, which remembers: it starts at the temperature of its node. Behind
+/// several nodes it is as many masses, C and G shared out as the capacities of the nodes.
 class ThermalMemory : public Effect {
  public:
   std::string name() const override { return "thermal-memory"; }
   Stage stage() const override { return Stage::conduction; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
-    for (const std::string& node : node_places(setting.network)) {
-      ThermalNetwork::AddedEffect one{name(), node, "", {}};
+    for (const std::string& place : spread_places(setting.network)) {
+      if (place == "all") continue;
+      ThermalNetwork::AddedEffect one{name(), place, "", {}};
       for (const EffectParameter& p : parameters(setting.network, one)) one.parameters.emplace_back(p.name, p.mean);
       result.push_back(std::move(one));
     }
@@ -96,23 +98,26 @@ class ThermalMemory : public Effect {
   }
   std::vector<EffectParameter> parameters(const ThermalNetwork& network,
                                           const ThermalNetwork::AddedEffect& added) const override {
-    const auto& node = network.nodes[static_cast<std::size_t>(node_at(network, added.location))];
-    double conductance = node.ambient_W_per_K;
-    for (const auto& link : network.links)
-      if (&network.nodes[static_cast<std::size_t>(link.a)] == &node ||
-          &network.nodes[static_cast<std::size_t>(link.b)] == &node)
-        conductance += link.conductance_W_per_K;
-    EffectParameter C = log_parameter("capacity_J_per_K", "J/K", node.capacity_J_per_K, 1);
+    double capacity = 0, conductance = 0;
+    for (const Index node : nodes_at(network, added.location)) {
+      const double own = network.nodes[static_cast<std::size_t>(node)].capacity_J_per_K;
+      capacity += own;
+      conductance += own / std::max(1e-9, network.time_constant_s(node));
+    }
+    EffectParameter C = log_parameter("capacity_J_per_K", "J/K", capacity, 1);
     EffectParameter G = log_parameter("conductance_W_per_K", "W/K", 0.3 * conductance, 1);
-    C.starts = {node.capacity_J_per_K, 3 * node.capacity_J_per_K};
+    C.starts = {capacity, 3 * capacity};
     C.shapes = true;
     return {C, G};
   }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
-    const Index node = node_at(network, added.location);
-    const Index hidden = system.add_node(node, [](const Moment&, const double* p) { return p[0]; });
-    system.add_conductance(hidden, node, [](const Moment&, const double* p) { return p[1]; });
+    const std::vector<Index> nodes = nodes_at(network, added.location);
+    const double share = 1 / static_cast<double>(nodes.size());
+    for (const Index node : nodes) {
+      const Index hidden = system.add_node(node, [share](const Moment&, const double* p) { return share * p[0]; });
+      system.add_conductance(hidden, node, [share](const Moment&, const double* p) { return share * p[1]; });
+    }
   }
 };
 

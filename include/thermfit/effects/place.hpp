@@ -53,6 +53,14 @@ inline std::string pair_name(const ThermalNetwork& network, Index a, Index b) {
   return network.nodes[static_cast<std::size_t>(a)].name + "-" + network.nodes[static_cast<std::size_t>(b)].name;
 }
 
+/// The one name of two nodes as a place: as their link has them, else in the order of the nodes.
+inline std::string pair_place(const ThermalNetwork& network, Index a, Index b) {
+  const Index link = network.find_link(a, b);
+  if (link < 0) return pair_name(network, std::min(a, b), std::max(a, b));
+  return pair_name(network, network.links[static_cast<std::size_t>(link)].a,
+                   network.links[static_cast<std::size_t>(link)].b);
+}
+
 inline Index link_at(const ThermalNetwork& network, const std::string& location) {
   const auto [a, b] = pair_at(network, location);
   const Index link = network.find_link(a, b);
@@ -110,8 +118,16 @@ inline std::vector<std::string> sensor_places(const ThermalNetwork& network) {
   return result;
 }
 
-/// Every single node, then the spread places: a node with its neighbours, linked nodes of one family (the part of the
-/// name before its last `_`), and all nodes. Each set of nodes once.
+/// Nodes as one place: `a+b`, or `all`.
+inline std::string place_of(const ThermalNetwork& network, const std::vector<Index>& nodes) {
+  if (static_cast<Index>(nodes.size()) == network.node_count() && nodes.size() > 1) return "all";
+  std::string name;
+  for (const Index i : nodes) name += (name.empty() ? "" : "+") + network.nodes[static_cast<std::size_t>(i)].name;
+  return name;
+}
+
+/// Every single node, then the spread places: a node with its neighbours, with those of its family (the part of the
+/// name before its last `_`), all linked nodes of a family, and all nodes. Each set of nodes once.
 inline std::vector<std::string> spread_places(const ThermalNetwork& network) {
   std::vector<std::vector<Index>> groups;
   const auto add = [&](std::vector<Index> group) {
@@ -130,6 +146,11 @@ inline std::vector<std::string> spread_places(const ThermalNetwork& network) {
     const std::string& name = network.nodes[static_cast<std::size_t>(i)].name;
     const std::string family = name.substr(0, name.rfind('_') == std::string::npos ? 0 : name.rfind('_') + 1);
     if (family.empty()) continue;
+    std::vector<Index> beside{i};
+    for (Index j = 0; j < count; ++j)
+      if (network.find_link(i, j) >= 0 && network.nodes[static_cast<std::size_t>(j)].name.rfind(family, 0) == 0)
+        beside.push_back(j);
+    add(std::move(beside));
     std::vector<Index> group{i};
     for (std::size_t known = 0; known < group.size(); ++known)
       for (Index j = 0; j < count; ++j)
@@ -140,13 +161,53 @@ inline std::vector<std::string> spread_places(const ThermalNetwork& network) {
     add(std::move(group));
   }
   std::vector<std::string> result;
-  for (const std::vector<Index>& group : groups) {
-    if (static_cast<Index>(group.size()) == count && count > 1) continue;
-    std::string name;
-    for (const Index i : group) name += (name.empty() ? "" : "+") + network.nodes[static_cast<std::size_t>(i)].name;
-    result.push_back(std::move(name));
-  }
+  for (const std::vector<Index>& group : groups)
+    if (static_cast<Index>(group.size()) < count || count == 1) result.push_back(place_of(network, group));
   if (count > 1) result.push_back("all");
+  return result;
+}
+
+/// Places one step from `place`: a link or a pair with one end moved to a neighbour; a single node moved to a
+/// neighbour; a set of nodes with a neighbour added or one of its nodes taken out. None for sources, sensors and
+/// outputs.
+inline std::vector<std::string> places_beside(const ThermalNetwork& network, const std::string& place) {
+  std::vector<std::string> result;
+  const auto add = [&](const std::string& one) {
+    if (one != place && std::find(result.begin(), result.end(), one) == result.end()) result.push_back(one);
+  };
+  const Index count = network.node_count();
+  std::vector<Index> nodes;
+  try {
+    nodes = nodes_at(network, place);
+  } catch (const Error&) {
+    try {
+      const auto [a, b] = pair_at(network, place);
+      for (Index j = 0; j < count; ++j) {
+        if (j == a || j == b) continue;
+        if (network.find_link(a, j) >= 0) add(pair_place(network, j, b));
+        if (network.find_link(b, j) >= 0) add(pair_place(network, a, j));
+      }
+    } catch (const Error&) {
+    }
+    return result;
+  }
+  const auto beside = [&](Index j) {
+    return std::any_of(nodes.begin(), nodes.end(), [&](Index i) { return network.find_link(i, j) >= 0; });
+  };
+  for (Index j = 0; j < count; ++j) {
+    const auto at = std::find(nodes.begin(), nodes.end(), j);
+    std::vector<Index> other = nodes;
+    if (at == nodes.end() && beside(j)) {
+      if (nodes.size() == 1) add(place_of(network, {j}));
+      other.push_back(j);
+    } else if (at != nodes.end() && nodes.size() > 1) {
+      other.erase(other.begin() + (at - nodes.begin()));
+    } else {
+      continue;
+    }
+    std::sort(other.begin(), other.end());
+    add(place_of(network, other));
+  }
   return result;
 }
 

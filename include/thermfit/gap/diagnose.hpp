@@ -58,22 +58,6 @@ inline std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
   return result;
 }
 
-/// Held-out residuals of the account that the *other* batches choose: picking the best account by the batches it is
-/// then judged on would flatter it.
-inline ChannelResiduals nested_residual(const std::vector<Explanation>& accounts, std::size_t batches) {
-  ChannelResiduals result(accounts.front().held.residual.size(), SeriesByBatch(batches));
-  for (std::size_t b = 0; b < batches; ++b) {
-    const Explanation* best = &accounts.front();
-    double best_score = -INFINITY;
-    for (const Explanation& one : accounts) {
-      const double score = one.held.log_score - one.held.by_batch(static_cast<Index>(b));
-      if (score > best_score) best_score = score, best = &one;
-    }
-    for (std::size_t c = 0; c < result.size(); ++c) result[c][b] = best->held.residual[c][b];
-  }
-  return result;
-}
-
 inline std::vector<RuledOut> ruled_out(const Investigation& found, const Judgement& judgement) {
   std::vector<RuledOut> result;
   const double before = excess_of(misfit_of(found.seen, found.calibrated.held.residual));
@@ -94,7 +78,9 @@ inline std::vector<RuledOut> ruled_out(const Investigation& found, const Judgeme
     const double share = 1 - excess_of(misfit_of(found.seen, one.held.residual)) / before;
     std::string reason = share < 0.005 ? "does not shrink the gap on held-out batches"
                                        : "closes " + percent(share) + " of the gap on held-out batches";
-    if (share >= 0.005 && !judgement.effects.empty()) reason += ", the best " + percent(judgement.closed_share);
+    if (share >= 0.005 && !judgement.effects.empty())
+      reason +=
+          ", the best " + percent(1 - excess_of(misfit_of(found.seen, judgement.nearest->held.residual)) / before);
     result.push_back({added.effect, added.location, std::move(reason)});
   }
   return result;
@@ -142,10 +128,7 @@ inline Diagnosed diagnose_fully(const ThermalNetwork& network, const Campaign& r
 
   result.residuals.as_simulated = found.as_given;
   result.residuals.calibrated = found.calibrated.held.residual;
-  result.residuals.with_effect = judgement.effects.empty() ? found.calibrated.held.residual
-                                 : judgement.best->effects.size() > 1
-                                     ? detail::nested_residual(found.several, found.seen.batches())
-                                     : detail::nested_residual(found.single, found.seen.batches());
+  result.residuals.with_effect = judgement.best->held.residual;
   demand_proof(judgement, result.residuals, found, options.judging, options.seed);
 
   Diagnosis& diagnosis = result.diagnosis;

@@ -178,7 +178,7 @@ struct Diagnosis {
   std::vector<CalibrationMove> calibration;  ///< largest move first
   std::vector<DataProblem> data_problems;
   std::vector<std::string> weaker_claims;  ///< what these data do not allow to say, and why
-  std::string mode = "network";  ///< "network" or "paired"
+  std::string mode = "network";            ///< "network" or "paired"
 };
 
 }  // namespace thermfit

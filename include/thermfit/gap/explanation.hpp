@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,19 @@ struct Explanation {
   std::vector<ThermalNetwork::AddedEffect> effects;  ///< with fitted values
   MapFit fit;
   HeldOut held;
+  int steps = 0;  ///< between its place and one that the catalogue lists
 };
+
+/// Evidence counts by this power: lumping errors repeat from batch to batch, so its nats are not worth what they would
+/// be if the model were exact (a coarsened likelihood, Miller and Dunson 2019).
+constexpr double evidence_power = 0.1;
+
+/// Log probability of an account up to a constant: its evidence, and for every step off the listed places the number of
+/// nodes that the step could have taken.
+inline double plausibility(const Explanation& one) {
+  return evidence_power * one.fit.log_evidence -
+         one.steps * std::log(static_cast<double>(std::max<std::size_t>(2, one.fit.prior.nodes.size())));
+}
 
 /// What stays the same while accounts of one campaign are compared.
 struct Inquiry {
@@ -57,18 +70,19 @@ inline Explanation explained_by(const Inquiry& inquiry, const std::vector<Therma
   return result;
 }
 
-/// Which of the screened deserve the full refit: the strongest, and the strongest of every effect that promises
-/// anything, so that a family whose linear promise misleads is not lost.
+/// Which of the screened deserve the full refit: the strongest, at most `of_one` of each effect (its other places are
+/// reached from these), and the strongest of every effect that promises anything, so that a family whose linear promise
+/// misleads is not lost.
 inline std::vector<Screened> finalists(const std::vector<Screened>& screened, std::size_t strongest, double least_gain,
-                                       double least_share) {
+                                       double least_share, std::ptrdiff_t of_one = 3) {
   std::vector<Screened> result;
-  std::vector<std::string> families;
+  std::map<std::string, std::ptrdiff_t> taken;
   for (const Screened& one : screened) {
-    const double best = screened.front().gain;
-    const bool known = std::find(families.begin(), families.end(), one.added.effect) != families.end();
     if (!std::isfinite(one.gain) || one.gain < least_gain) continue;
-    if (result.size() >= strongest && (known || one.gain < least_share * best)) continue;
-    if (!known) families.push_back(one.added.effect);
+    std::ptrdiff_t& known = taken[one.added.effect];
+    const bool weak = result.size() >= strongest && (known > 0 || one.gain < least_share * screened.front().gain);
+    if (weak || known >= of_one) continue;
+    ++known;
     result.push_back(one);
   }
   return result;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/gap/lone_input.hpp"
 #include "thermfit/gap/map_fit.hpp"
 
 namespace thermfit {
@@ -12,11 +13,15 @@ namespace thermfit {
 using Folds = std::vector<std::vector<std::size_t>>;
 
 /// Every batch left out once: alone up to `most_folds` batches, else every most_folds-th together, so that each fold
-/// keeps all conditions. Fewer than two batches leave nothing to judge by: no folds.
-inline Folds folds_of(std::size_t batches, std::size_t most_folds = 12) {
-  if (batches < 2) return {};
-  Folds result(std::min(batches, most_folds));
-  for (std::size_t b = 0; b < batches; ++b) result[b % result.size()].push_back(b);
+/// keeps all conditions. A batch that alone drives an input judges nothing and stays with the others. Fewer than two
+/// batches leave nothing to judge by: no folds.
+inline Folds folds_of(const MachineRecord& seen, std::size_t most_folds = 12) {
+  std::vector<std::size_t> judges;
+  for (std::size_t b = 0; b < seen.batches(); ++b)
+    if (!drives_alone(seen, b)) judges.push_back(b);
+  if (judges.size() < 2) return {};
+  Folds result(std::min(judges.size(), most_folds));
+  for (std::size_t k = 0; k < judges.size(); ++k) result[k % result.size()].push_back(judges[k]);
   return result;
 }
 
@@ -25,24 +30,22 @@ struct HeldOut {
   ChannelResiduals residual;
   std::vector<ResidualNoise> noise;  ///< of this residual
   double log_score = 0;              ///< log predictive density of all channels
-  Vector by_batch;                   ///< the same by batch
+  Vector by_channel;                 ///< the same by channel
 };
 
 inline HeldOut scored(const MachineRecord& seen, ChannelResiduals residual, const std::vector<ResidualNoise>& start) {
   HeldOut result;
   result.noise = noise_of(seen, residual, start);
-  result.by_batch = Vector::Zero(static_cast<Index>(seen.batches()));
+  result.by_channel.resize(static_cast<Index>(residual.size()));
   for (std::size_t c = 0; c < residual.size(); ++c)
-    for (std::size_t b = 0; b < seen.batches(); ++b)
-      result.by_batch(static_cast<Index>(b)) +=
-          log_likelihood(result.noise[c], SeriesByBatch{residual[c][b]}, {seen.time_s[b]});
-  result.log_score = result.by_batch.sum();
+    result.by_channel(static_cast<Index>(c)) = log_likelihood(result.noise[c], residual[c], seen.time_s);
+  result.log_score = result.by_channel.sum();
   result.residual = std::move(residual);
   return result;
 }
 
 /// Working coordinates fitted without some batches: a Gauss-Newton step away from the fit to all of them, with the
-/// normal equations of the left-out batches subtracted, halved until the training batches agree with it.
+/// normal equations of the left-out batches subtracted, damped until the training batches agree with it.
 inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library,
                                   const std::vector<std::size_t>& left_out,
                                   const std::vector<std::vector<Whitener>>& whiteners) {
@@ -52,7 +55,6 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
   Vector low(n), high(n);
   for (Index j = 0; j < n; ++j) std::tie(low(j), high(j)) = detail::coordinate_range(fit.parameter(j));
   const Matrix information = kept.information + Matrix::Identity(n, n);
-  Vector step = detail::step_in_box(information, kept.score - fit.t, fit.t, low, high);
 
   std::vector<Excitation> training;
   std::vector<std::size_t> batches;
@@ -74,19 +76,23 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
   };
   double before = fit.t.squaredNorm();
   for (const std::size_t b : batches) before += fit.equations.by_batch[b].squares;
-  for (int attempt = 0; attempt < 4; ++attempt, step *= 0.5) {
+  const Matrix identity = Matrix::Identity(n, n);
+  for (double damping = 0; damping<1e6; damping = damping> 0 ? 30 * damping : 0.3) {
+    const Vector step = detail::step_in_box(information + damping * identity, kept.score - fit.t, fit.t, low, high);
     const double after = cost(fit.t + step);
     if (std::isfinite(after) && after < before) return fit.t + step;
   }
   return fit.t;
 }
 
-/// Residuals of every batch from a fit that has not seen it.
+/// Residuals of every batch from a fit that has not seen it; of a batch in no fold, nothing (NaN).
 inline HeldOut held_out(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library,
                         const Folds& folds) {
   if (folds.empty()) return scored(seen, fit.residual, fit.noise);
   const auto whiteners = whiteners_of(seen, fit.noise);
-  ChannelResiduals residual(seen.channels.size(), SeriesByBatch(seen.batches()));
+  ChannelResiduals residual(seen.channels.size());
+  for (SeriesByBatch& channel : residual)
+    for (const Vector& time_s : seen.time_s) channel.push_back(Vector::Constant(time_s.size(), std::nan("")));
   for (const std::vector<std::size_t>& left_out : folds) {
     const Vector t = coordinates_without(seen, fit, library, left_out, whiteners);
     std::vector<Excitation> unseen;

@@ -16,7 +16,7 @@ struct Judgement {
   std::vector<FoundEffect> effects;      ///< empty for none, miscalibration and unknown
   const Explanation* best = nullptr;     ///< the account behind `effects`; calibration alone where there are none
   const Explanation* nearest = nullptr;  ///< the best account tried, named or not
-  double closed_share = 0;               ///< of the excess of calibration alone, by `nearest`
+  Closure closure;                       ///< of what calibration leaves, by `nearest`
 };
 
 namespace detail {
@@ -65,72 +65,92 @@ inline FoundEffect found_effect(const Inquiry& inquiry, const std::vector<Explan
   return result;
 }
 
-/// A thermometer whose offset is beyond its tolerance: log odds of a fault against the tail of the tolerance.
-inline const Explanation* faulty_offset(const Investigation& found, double least_odds) {
-  const Explanation* result = nullptr;
-  double best = least_odds;
-  for (const Explanation& one : found.single) {
-    if (one.effects[0].effect != "sensor-offset") continue;
-    const double odds = one.fit.log_evidence - found.calibrated.fit.log_evidence -
-                        std::log(static_cast<double>(std::max<std::size_t>(1, found.seen.channels.size())));
-    if (odds > best) best = odds, result = &one;
+/// The thermometer whose offset is least like a tolerance, and the log odds of a fault against it.
+struct OffsetFault {
+  Index sensor = -1;
+  double odds = -INFINITY;
+};
+
+/// From the offset that the data alone ask for, m with variance v in units of the tolerance: log N(m; 0, v + 1 + r^2) /
+/// N(m; 0, v + 1), r the prior size of a fault over the tolerance. No refit: an offset is linear.
+inline OffsetFault offset_fault(const Inquiry& inquiry, const MapFit& fit) {
+  OffsetFault result;
+  const Index n = fit.t.size();
+  const Matrix covariance = (fit.total().information + Matrix::Identity(n, n)).llt().solve(Matrix::Identity(n, n));
+  for (Index j = 0; j < n; ++j) {
+    const Parameter& one = fit.parameter(j);
+    if (one.kind != Parameter::Kind::sensor_offset || !(covariance(j, j) < 1)) continue;
+    const double precision = 1 / covariance(j, j) - 1, asked = fit.t(j) / (precision * covariance(j, j));
+    ThermalNetwork::AddedEffect fault{"sensor-offset", inquiry.machine.sensors[one.item].column, "", {}};
+    const double size = inquiry.library.at(fault.effect).parameters(inquiry.machine, fault)[0].sd / one.sd;
+    const double tolerated = 1 / precision + 1, faulty = tolerated + size * size;
+    const double odds = 0.5 * (std::log(tolerated / faulty) + asked * asked * (1 / tolerated - 1 / faulty));
+    if (odds > result.odds) result = {static_cast<Index>(one.item), odds};
   }
   return result;
+}
+
+/// Names a faulty offset where the data and the number of thermometers and effects allow.
+inline bool name_offset(const Inquiry& inquiry, const Investigation& found, Judgement& result) {
+  const OffsetFault fault = offset_fault(inquiry, found.calibrated.fit);
+  if (fault.sensor < 0) return false;
+  const std::string& column = inquiry.machine.sensors[static_cast<std::size_t>(fault.sensor)].column;
+  const auto account = std::find_if(found.single.begin(), found.single.end(), [&](const Explanation& one) {
+    return one.effects[0].effect == "sensor-offset" && one.effects[0].location == column;
+  });
+  const double odds =
+      fault.odds - std::log(static_cast<double>(found.seen.channels.size() * inquiry.library.all().size()));
+  if (odds < 0 || account == found.single.end()) return false;
+  FoundEffect one;
+  one.effect = "sensor-offset";
+  one.location = column;
+  one.confidence = logistic(odds);
+  one.parameters = estimates(inquiry, *account, 0);
+  result.effects = {one};
+  result.verdict = Verdict::effect;
+  result.best = result.nearest = &*account;
+  return true;
 }
 
 }  // namespace detail
 
 /// From what was tried to a verdict.
 ///
-/// A gap is real when its held-out excess is more than a right machine leaves, or when an effect explains far better
-/// what calibration only absorbs, both in evidence and in held-out score. It is explained when the best account closes
-/// most of that excess on batches it has not seen; accounts share the probability by their held-out scores. A second
-/// effect is named only when it closes most of what the first leaves.
+/// A gap is real when some channel leaves on held-out batches far more than a right machine would, or when an effect
+/// explains what calibration only absorbs so much better that the number of candidates tried does not account for it.
+/// It is explained when the best account closes most of it on batches it has not seen; accounts share the probability
+/// by their evidence. A second effect is named only when it closes most of what the first leaves.
 inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const JudgingOptions& options = {}) {
   Judgement result;
   result.best = result.nearest = &found.calibrated;
-  const double before = excess_of(misfit_of(found.seen, found.calibrated.held.residual));
-  const double placed =
-      found.placed.residual.empty() ? before : excess_of(misfit_of(found.seen, found.placed.residual));
-  const double gain = found.single.empty()
-                          ? 0
-                          : std::min(found.single[0].held.log_score - found.calibrated.held.log_score,
-                                     found.single[0].fit.log_evidence - found.calibrated.fit.log_evidence);
-  if (before <= options.least_excess && gain < options.least_gain) {
-    if (const Explanation* offset = detail::faulty_offset(found, options.offset_odds)) {
-      const double odds = std::exp(offset->fit.log_evidence - found.calibrated.fit.log_evidence -
-                                   std::log(static_cast<double>(found.seen.channels.size())));
-      FoundEffect one;
-      one.effect = "sensor-offset";
-      one.location = offset->effects[0].location;
-      one.confidence = odds / (1 + odds);
-      one.parameters = detail::estimates(inquiry, *offset, 0);
-      result.effects = {one};
-      result.verdict = Verdict::effect;
-      result.best = result.nearest = offset;
-      result.closed_share = 1;
-      return result;
-    }
+  const bool real = misfit_of(found.seen, found.calibrated.held.residual).maxCoeff() > options.far;
+  const double odds = found.single.empty()
+                          ? -INFINITY
+                          : plausibility(found.single[0]) - plausibility(found.calibrated) -
+                                std::log(static_cast<double>(std::max<std::size_t>(1, found.screened.size())));
+  if (!real && odds < 0) {
+    if (detail::name_offset(inquiry, found, result)) return result;
+    const double placed = excess_of(
+        misfit_of(found.seen, found.placed.residual.empty() ? found.calibrated.held.residual : found.placed.residual));
     result.verdict = placed <= options.least_excess ? Verdict::none : Verdict::miscalibration;
     return result;
   }
   if (found.single.empty()) return result;
 
-  const auto excess = [&](const Explanation& one) { return excess_of(misfit_of(found.seen, one.held.residual)); };
   const Explanation& single = found.single.front();
-  const double after_one = excess(single);
+  const double after_one = excess_of(misfit_of(found.seen, single.held.residual));
   bool two = false;
-  if (!found.several.empty() && after_one > options.least_excess) {
+  if (!found.several.empty()) {
     const Explanation& pair = found.several.front();
-    const double gained = pair.held.log_score - single.held.log_score;
-    two = options.score_power * gained > options.offset_odds && excess(pair) < (1 - options.second_closes) * after_one;
+    const double gained =
+        plausibility(pair) - plausibility(single) - std::log(static_cast<double>(found.screened.size()));
+    two = gained > 0 && excess_of(misfit_of(found.seen, pair.held.residual)) < (1 - options.second_closes) * after_one;
   }
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
-  const double after = excess(accounts.front());
   result.nearest = &accounts.front();
-  result.closed_share = before > options.least_excess ? 1 - after / before : 1;
-  const double known = probability_known(result.closed_share, options);
-  const std::vector<double> weight = probabilities(accounts, options.score_power);
+  result.closure = closure_of(found.seen, found.calibrated.held, accounts.front().held);
+  const double known = probability_known(result.closure, options) * logistic(odds);
+  const std::vector<double> weight = probabilities(accounts);
   if (known < 0.5) return result;
 
   const std::vector<ThermalNetwork::AddedEffect>& leading = accounts.front().effects;

@@ -7,6 +7,7 @@
 
 #include "thermfit/error.hpp"
 #include "thermfit/gap/noise.hpp"
+#include "thermfit/gap/resolution.hpp"
 #include "thermfit/network/excitation.hpp"
 
 namespace thermfit {
@@ -37,11 +38,16 @@ struct MachineRecord {
 /// expected of every model, right or wrong, and no effect gets credit for removing it.
 constexpr double lumping_tolerance = 0.01;
 
+/// Steps of temperature-dependent heat while machines are compared (Excitation::state_step): errors of some mK, far
+/// below what is expected of any model, for a tenth of the time.
+constexpr double search_state_step = 0.3;
+
 /// The channels of `network` that `campaign` measured. The column that gives the ambient temperature is an input, not
 /// an output. Throws Error when there is none, or when a batch cannot drive the network.
 inline MachineRecord observations_of(const ThermalNetwork& network, const Campaign& campaign) {
   MachineRecord result;
   result.excitations = excitations_of(network, campaign);
+  for (Excitation& one : result.excitations) one.state_step = search_state_step;
   double shortest = 1e300, longest = 0;
   for (const Batch& batch : campaign) {
     result.names.push_back(batch.name);
@@ -76,7 +82,7 @@ inline MachineRecord observations_of(const ThermalNetwork& network, const Campai
     }
     if (count == 0) return;
     channel.swing = std::sqrt(swing / count);
-    channel.floor = high_frequency_sd(channel.measured);
+    channel.floor = std::max(high_frequency_sd(channel.measured), resolution_sd(channel.measured));
     channel.bounds.least_white = std::max(0.7 * channel.floor, 1e-3 * channel.swing);
     channel.bounds.least_slow = std::hypot(lumping_tolerance * channel.swing, channel.floor);
     channel.bounds.shortest_s = 5 * shortest;

@@ -9,38 +9,56 @@
 
 namespace thermfit {
 
-/// The few numbers between scores and probabilities. They were set by hand on development cases, among them some of
-/// data/withheld, and are not calibrated yet: read a confidence as an order, not as a frequency.
+/// The few numbers between what was measured and probabilities: fitted by logistic regression on generated campaigns
+/// and the withheld cases, and checked by leaving each case out (tests/blind/README.md).
 struct JudgingOptions {
-  /// Log scores count by this power: lumping errors repeat from batch to batch, so nats of held-out score are not worth
-  /// what they would be if the model were exact (a coarsened likelihood).
-  double score_power = 0.1;
-  double least_excess = 1;      ///< below it a gap is what a right machine leaves
-  double least_gain = 100;      ///< nats of score and evidence that make an effect credible below that
-  double half_closed = 0.55;    ///< share of the excess that an effect closes at which known and unknown are even
-  double closing_width = 0.07;  ///< of the logistic curve around it
-  double second_closes = 0.5;   ///< share of what one effect leaves that a second must close to be named
-  double listed = 0.05;         ///< rivals above this probability are listed
-  double offset_odds = 3;       ///< log odds beyond which an offset is a fault and not a tolerance
+  double far = 5;              ///< misfit of a channel, (rms / expected)^2, beyond which a gap is real
+  double least_excess = 1;     ///< below it, summed over channels, sensors only had to be placed
+  double known_by_share = 3;   ///< log odds that the cause is known: this times the share that it closes …
+  double known_by_left = 1.6;  ///< … less this times log(1 + what it leaves)
+  double second_closes = 0.5;  ///< share of what one effect leaves that a second must close to be named
+  double listed = 0.05;        ///< rivals above this probability are listed
 };
 
-/// Probabilities of several accounts of the same campaign, from their held-out scores.
-inline std::vector<double> probabilities(const std::vector<Explanation>& accounts, double score_power) {
+inline double logistic(double odds) { return 1 / (1 + std::exp(-odds)); }
+
+/// Probabilities of several accounts of the same campaign.
+inline std::vector<double> probabilities(const std::vector<Explanation>& accounts) {
   std::vector<double> result;
   double best = -INFINITY, sum = 0;
-  for (const Explanation& one : accounts) best = std::max(best, one.held.log_score);
+  for (const Explanation& one : accounts) best = std::max(best, plausibility(one));
   for (const Explanation& one : accounts) {
-    result.push_back(std::exp(score_power * (one.held.log_score - best)));
+    result.push_back(std::exp(plausibility(one) - best));
     sum += result.back();
   }
   for (double& one : result) one /= sum;
   return result;
 }
 
-/// Probability that what was found is the cause rather than the nearest thing in the catalogue to an unknown one, from
-/// the share of the excess that it closes on held-out batches.
-inline double probability_known(double closed_share, const JudgingOptions& options) {
-  return 1 / (1 + std::exp(-(closed_share - options.half_closed) / options.closing_width));
+/// What an account does on held-out batches to the gap that calibration leaves. Channels weigh by the log score that
+/// the account gains in them: a wandering thermometer elsewhere on the machine speaks neither for nor against it.
+struct Closure {
+  double share = 1;  ///< of the squared gap beyond expectation that it closes; 1 where there was nothing to close
+  double left = 0;   ///< squared gap beyond expectation that it leaves, in units of what is expected
+};
+
+inline Closure closure_of(const MachineRecord& seen, const HeldOut& before, const HeldOut& after) {
+  const Vector gained = (after.by_channel - before.by_channel).cwiseMax(0);
+  if (!(gained.sum() > 0)) return {0, excess_of(misfit_of(seen, after.residual))};
+  const Vector from = (misfit_of(seen, before.residual).array() - 1).max(0);
+  const Vector to = (misfit_of(seen, after.residual).array() - 1).max(0);
+  Closure result{0, 0};
+  for (Index c = 0; c < gained.size(); ++c) {
+    const double weight = gained(c) / gained.sum();
+    result.share += weight * (from(c) > 0 ? std::clamp(1 - to(c) / from(c), 0.0, 1.0) : 1.0);
+    result.left += weight * to(c);
+  }
+  return result;
+}
+
+/// Probability that what was found is the cause rather than the nearest thing in the catalogue to an unknown one.
+inline double probability_known(const Closure& closure, const JudgingOptions& options) {
+  return logistic(options.known_by_share * closure.share - options.known_by_left * std::log1p(closure.left));
 }
 
 /// One effect of an account with its rivals: the accounts marginalised over everything but the effect in question.

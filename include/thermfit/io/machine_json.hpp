@@ -128,7 +128,7 @@ class MachineReader {
     if (!object.json().is_object()) object.fail("not an object", "{column: {\"node\": name}}");
     for (const auto& [column, value] : object.json().items()) {
       const JsonNode sensor = object.at(column);
-      sensor.require_keys({"node", "offset_K", "placement"});
+      sensor.require_keys({"node", "offset_K", "placement", "response_s"});
       const std::string node = sensor.at("node").text();
       const Index index = node == "ambient" ? ThermalNetwork::ambient_node : node_named(sensor.at("node"), node);
       ThermalNetwork::Sensor& added = network_.sensors.emplace_back();
@@ -136,6 +136,7 @@ class MachineReader {
       added.node = index;
       if (const auto offset = sensor.find("offset_K")) added.offset_K = offset->number();
       if (const auto placement = sensor.find("placement")) added.placement = by_node(*placement);
+      if (const auto response = sensor.find("response_s")) added.response_s = response->number();
     }
   }
 
@@ -148,8 +149,8 @@ class MachineReader {
   }
 
   void read_uncertainty(const JsonNode& node) {
-    node.require_keys(
-        {"capacity", "ambient", "conductance", "power", "um_per_K", "sensor_offset_K", "sensor_placement"});
+    node.require_keys({"capacity", "ambient", "conductance", "power", "um_per_K", "sensor_offset_K", "sensor_placement",
+                       "sensor_response"});
     ThermalNetwork::Uncertainty& sd = network_.uncertainty;
     for (const auto& [key, target] : {std::pair<const char*, double*>{"capacity", &sd.capacity},
                                       {"ambient", &sd.ambient},
@@ -157,7 +158,8 @@ class MachineReader {
                                       {"power", &sd.power},
                                       {"um_per_K", &sd.um_per_K},
                                       {"sensor_offset_K", &sd.sensor_offset_K},
-                                      {"sensor_placement", &sd.sensor_placement}})
+                                      {"sensor_placement", &sd.sensor_placement},
+                                      {"sensor_response", &sd.sensor_response}})
       if (const auto value = node.find(key)) *target = value->number();
   }
 
@@ -255,6 +257,7 @@ inline Json machine_to_json(const ThermalNetwork& network) {
     for (const auto& share : sensor.placement)
       if (share.second != 0) moved.push_back(share);
     if (!moved.empty()) entry["placement"] = detail::by_node_json(network, moved);
+    if (sensor.response_s != 0) entry["response_s"] = sensor.response_s;
   }
   using Start = ThermalNetwork::Initial::Rule;
   document["initial"] = network.initial.rule == Start::ambient    ? Json("ambient")
@@ -267,7 +270,8 @@ inline Json machine_to_json(const ThermalNetwork& network) {
                              {"power", sd.power},
                              {"um_per_K", sd.um_per_K},
                              {"sensor_offset_K", sd.sensor_offset_K},
-                             {"sensor_placement", sd.sensor_placement}};
+                             {"sensor_placement", sd.sensor_placement},
+                             {"sensor_response", sd.sensor_response}};
   if (network.effects.empty()) return document;
   document["effects"] = Json::array();
   for (const auto& added : network.effects) {

@@ -60,6 +60,8 @@ class Drive {
     const Vector& measured = excitation_.measured_ambient_degC;
     now.measured_ambient_degC = measured.size() > 0 ? between(measured, sample, time_s) : now.ambient_degC;
     now.first_measured_ambient_degC = measured.size() > 0 ? measured(0) : now.first_ambient_degC;
+    const Vector& readings = excitation_.first_reading_degC;
+    now.first_reading_degC = readings.size() > 0 ? readings.data() : nullptr;
     now.inputs = inputs_.row(sample).data();
     now.temperature_degC = temperature_degC;
     return now;

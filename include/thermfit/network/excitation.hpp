@@ -6,6 +6,7 @@
 
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/network/smooth_level.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit {
@@ -17,9 +18,13 @@ struct Excitation {
   std::vector<std::string> input_names;  ///< columns of `inputs`
   Matrix inputs;                         ///< samples x inputs, held until the next sample
   Vector ambient_degC;                   ///< at the samples, linear between them
-  Vector measured_ambient_degC;          ///< reading of the ambient sensor; empty where there is none
+  Vector measured_ambient_degC;          ///< of the ambient sensor, its noise smoothed; empty where there is none
+  Vector first_reading_degC;             ///< of every sensor of the network; NaN where the batch has none
   Vector start_degC;  ///< of every node, as read: the simulation takes the mean of the sensors' offsets off
   std::vector<std::vector<Index>> start_sensors;  ///< for each node, the sensors its start was read from
+  /// Steps for heat that depends on temperatures, in units of its time constant; errors grow with the square. The
+  /// default is exact to about 1e-5 K.
+  double state_step = 0.03;
 
   Index samples() const { return time_s.size(); }
 
@@ -115,7 +120,13 @@ inline Excitation excitation_of(const ThermalNetwork& network, const Batch& batc
   if (const ThermalNetwork::Sensor* sensor = detail::ambient_sensor(network, batch)) {
     result.measured_ambient_degC = batch.temperatures.values.col(batch.temperatures.find(sensor->column));
     if (!result.measured_ambient_degC.allFinite()) result.measured_ambient_degC.resize(0);
+    smooth_level(result.measured_ambient_degC);
   }
+
+  result.first_reading_degC = Vector::Constant(static_cast<Index>(network.sensors.size()), std::nan(""));
+  for (std::size_t s = 0; s < network.sensors.size(); ++s)
+    if (const Index column = batch.temperatures.find(network.sensors[s].column); column >= 0)
+      result.first_reading_degC(static_cast<Index>(s)) = batch.temperatures.values(0, column);
 
   const Index nodes = network.node_count();
   result.start_degC = Vector::Constant(nodes, result.ambient_degC(0));

@@ -50,10 +50,11 @@ class Integrator {
   /// Nodes x state columns.
   const Matrix& modal_tangents() const { return tangents_; }
 
-  /// dtheta/dt just after the present time.
+  /// dtheta/dt of the present state under the heat of the regime that was entered last.
   Vector rates(Index sample, double time_s) {
     Vector force = held_force_ + drive_.ambient(sample, time_s) * regime_->ambient_drive;
-    if (!system_.state_flows.empty()) force += flows(sample, time_s, temperatures_, tangents_, nullptr);
+    if (!system_.state_flows.empty())
+      force += flows(sample, time_s, regime_->propagator.modes().transpose() * state_, tangents_, nullptr);
     return regime_->propagator.modes().transpose() * (force - regime_->propagator.rates().cwiseProduct(state_));
   }
 
@@ -113,7 +114,9 @@ class Integrator {
       }
     return slope.cwiseQuotient(regimes_.capacities()).maxCoeff();
   }
-  int substeps_for(double h) const { return 1 + static_cast<int>(std::min(1000.0, h * rate_bound_ / 0.03)); }
+  int substeps_for(double h) const {
+    return 1 + static_cast<int>(std::min(1000.0, h * rate_bound_ / drive_.excitation().state_step));
+  }
 
   /// Heat that is held over the step, as modal force, and its slopes.
   void set_heat(Index sample, double time_s) {
@@ -148,22 +151,30 @@ class Integrator {
   }
 
   /// Modal force of all state-dependent heat at `degC`, and its tangents where `slopes` is given.
-  Vector flows(Index sample, double time_s, Vector degC, const Matrix& modal_tangents, Matrix* slopes) const {
+  Vector flows(Index sample, double time_s, Vector degC, const Matrix& modal_tangents, Matrix* slopes) {
     const Matrix& modes = regime_->propagator.modes();
-    Vector force = Vector::Zero(nodes_);
-    if (slopes) slopes->setZero(nodes_, state_columns());
-    for (const ThermalSystem::StateFlow& flow : system_.state_flows) {
-      Vector pattern = Vector::Zero(nodes_);
-      for (const auto& [node, share] : flow.into) pattern += share * modes.col(node);
-      force += flow_W(flow, sample, time_s, degC) * pattern;
-      if (slopes) *slopes += pattern * flow_tangent(flow, sample, time_s, degC, modal_tangents);
+    const Index count = static_cast<Index>(system_.state_flows.size());
+    Vector into = Vector::Zero(nodes_);  // W, by node
+    if (slopes) {
+      patterns_.setZero(nodes_, count);
+      flow_tangents_.setZero(count, state_columns());
+      node_tangents_.noalias() = modes.transpose() * modal_tangents;
     }
-    return force;
+    for (Index f = 0; f < count; ++f) {
+      const ThermalSystem::StateFlow& flow = system_.state_flows[static_cast<std::size_t>(f)];
+      const double watt = flow_W(flow, sample, time_s, degC);
+      for (const auto& [node, share] : flow.into) {
+        into(node) += share * watt;
+        if (slopes) patterns_.col(f) += share * modes.col(node);
+      }
+      if (slopes) add_flow_tangent(flow, sample, time_s, degC, flow_tangents_.row(f));
+    }
+    if (slopes) slopes->noalias() = patterns_ * flow_tangents_;
+    return modes * into;
   }
 
-  Eigen::RowVectorXd flow_tangent(const ThermalSystem::StateFlow& flow, Index sample, double time_s, Vector& degC,
-                                  const Matrix& modal_tangents) const {
-    Eigen::RowVectorXd tangent = Eigen::RowVectorXd::Zero(state_columns());
+  void add_flow_tangent(const ThermalSystem::StateFlow& flow, Index sample, double time_s, Vector& degC,
+                        Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> tangent) const {
     for (const Index node : flow.depends_on) {
       const double kept = degC(node);
       degC(node) = kept + difference_step;
@@ -171,7 +182,7 @@ class Integrator {
       degC(node) = kept - difference_step;
       const double slope = (above - flow_W(flow, sample, time_s, degC)) / (2 * difference_step);
       degC(node) = kept;
-      tangent.noalias() += slope * (regime_->propagator.modes().col(node).transpose() * modal_tangents);
+      tangent += slope * node_tangents_.row(node);
     }
     const Moment now = drive_.moment(sample, time_s, degC.data());
     double factor = 1;
@@ -192,7 +203,6 @@ class Integrator {
     }
     system_.derivatives(flow.law, now,
                         [&](Column column, double slope) { tangent(state_column(column)) += factor * slope; });
-    return tangent;
   }
 
   void substep(Index sample, double begin_s, double end_s, const StepWeights& weights) {
@@ -317,6 +327,7 @@ class Integrator {
   std::vector<HeatSlope> heat_slopes_;
   double rate_bound_ = 0;
   Matrix mix_, through_links_, to_ambient_;
+  Matrix patterns_, flow_tangents_, node_tangents_;  ///< of state flows, while their tangents are made
 };
 
 }  // namespace thermfit::detail

@@ -16,6 +16,8 @@ struct Moment {
   double first_ambient_degC = 0;     ///< the same at the first sample
   double measured_ambient_degC = 0;  ///< the reading of the ambient sensor, where the batch has one
   double first_measured_ambient_degC = 0;
+  const double* first_reading_degC =
+      nullptr;                               ///< of every sensor, NaN where there is none; null where nothing is known
   double reading_degC = 0;                   ///< what the sensor would read, for laws of readings
   const double* inputs = nullptr;            ///< values of the batch's input columns, held since the last sample
   const double* temperature_degC = nullptr;  ///< of every node

@@ -16,9 +16,9 @@ namespace thermfit {
 /// Its working coordinate t is 0 at the prior's mean and counts prior standard deviations:
 /// value = mean exp(sd t) where `logarithmic`, else mean + sd t. So the prior of every t is N(0, 1).
 struct Parameter {
-  enum class Kind { capacity, ambient, conductance, power, expansion, sensor_offset, placement, effect };
+  enum class Kind { capacity, ambient, conductance, power, expansion, sensor_offset, placement, response, effect };
   Kind kind = Kind::capacity;
-  std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, effect
+  std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, sensor, sensor, effect
   std::size_t part =
       0;             ///< entry of the displacement's um_per_K or of the sensor's placement, or parameter of the effect
   std::string name;  ///< "capacity of head_front"
@@ -55,6 +55,8 @@ void visit_value(Network& network, const Parameter& parameter, Take take) {
       return take(network.sensors[parameter.item].offset_K);
     case Kind::placement:
       return take(network.sensors[parameter.item].placement[parameter.part].second);
+    case Kind::response:
+      return take(network.sensors[parameter.item].response_s);
     case Kind::effect:
       return take(network.effects[parameter.item].parameters[parameter.part].second);
   }
@@ -98,8 +100,8 @@ inline ThermalNetwork with_placements(ThermalNetwork network) {
 }
 
 /// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
-/// sensor offsets, then each effect's own (network.effects must be complete). Numbers that are zero and cannot be
-/// negative stay zero and are left out, and so are offsets of ambient sensors.
+/// sensor offsets, placements and responses, then each effect's own (network.effects must be complete). Numbers that
+/// are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
 inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& network, const EffectLibrary& effects) {
   using Kind = Parameter::Kind;
   std::vector<Parameter> result;
@@ -144,6 +146,12 @@ inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& netwo
              network.sensors[i].column + " towards " + nodes[static_cast<std::size_t>(node)].name, "", share,
              sd.sensor_placement);
     }
+  for (std::size_t i = 0; i < network.sensors.size(); ++i) {
+    const ThermalNetwork::Sensor& sensor = network.sensors[i];
+    if (sensor.node >= 0)
+      linear(Kind::response, i, 0, "response of " + sensor.column, "s", sensor.response_s,
+             sd.sensor_response * network.time_constant_s(sensor.node));
+  }
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     const ThermalNetwork::AddedEffect& added = network.effects[e];
     const std::vector<EffectParameter> own = effects.at(added.effect).parameters(network, added);

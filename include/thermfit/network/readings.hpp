@@ -16,6 +16,9 @@ class Readings {
     const Index channels = sensors_ + static_cast<Index>(system.displacements.size());
     values_.resize(samples_, channels);
     tangents_.setZero(samples_ * channels, system.columns);
+    for (const ThermalSystem::Sensor& sensor : system.sensors)
+      any_response_ = any_response_ || sensor.response_s != 0 || sensor.response_column >= 0;
+    rates_ = Vector::Zero(static_cast<Index>(system.capacities.size()));
   }
 
   /// By how much the displacements are logged late.
@@ -23,6 +26,11 @@ class Readings {
     double sum = 0;
     for (const BoundLaw& law : system_.delays) sum += system_.value(law, Moment{});
     return sum;
+  }
+
+  /// The rates that late readings show at `end_s`: those just before, under the inputs held since `sample`.
+  void take_rates(Index sample, double end_s, Integrator& now) {
+    if (any_response_) rates_ = now.rates(sample, end_s);
   }
 
   void take_temperatures(Index sample, const Regime& regime, const Integrator& now) {
@@ -36,9 +44,12 @@ class Readings {
       if (!air)
         for (const auto& [neighbour, share] : sensor.placement)
           degC += share * (now.temperatures()(neighbour) - now.temperatures()(sensor.node));
+      const bool late = sensor.response_s != 0 || sensor.response_column >= 0;
+      if (!air && late) degC -= sensor.response_s * rates_(sensor.node);
       values_(sample, s) = degC + sensor.offset_K;
       if (system_.columns == 0) continue;
       auto row = tangents_.row(s * samples_ + sample);
+      if (sensor.response_column >= 0) row(sensor.response_column) -= rates_(sensor.node);
       if (!air)
         scatter(block_, s, row);
       else if (drive_.ambient_moves())
@@ -183,6 +194,8 @@ class Readings {
   Matrix values_;       ///< samples x channels
   RowMatrix tangents_;  ///< (channel * samples + sample) x parameters
   Matrix block_;
+  bool any_response_ = false;
+  Vector rates_;  ///< dtheta/dt of every node before the present sample; at rest before the first
 };
 
 }  // namespace thermfit::detail

@@ -39,7 +39,9 @@ inline Simulation simulate_batch(const ThermalSystem& system, Regimes& regimes, 
       readings.take_temperatures(k, regime, integrator);
     }
     for (const Index k : point.positions) readings.take_displacements(k, point, regime, integrator);
-    if (i + 1 < grid.size()) integrator.advance(point.sample, point.time_s, grid[i + 1].time_s);
+    if (i + 1 == grid.size()) break;
+    integrator.advance(point.sample, point.time_s, grid[i + 1].time_s);
+    readings.take_rates(point.sample, grid[i + 1].time_s, integrator);
   }
   readings.finish();
   result.channels = std::move(readings.values());

@@ -50,7 +50,8 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
   const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Kind kind = parameters[j].kind;
-    if (kind != Kind::expansion && kind != Kind::placement && (kind != Kind::sensor_offset || offsets_move_start))
+    if (kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&
+        (kind != Kind::sensor_offset || offsets_move_start))
       system.state_columns.push_back(static_cast<Column>(j));
   }
   for (std::size_t i = 0; i < network.nodes.size(); ++i) {
@@ -85,6 +86,8 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
     sensor.placement = network.sensors[i].placement;
     for (std::size_t k = 0; k < sensor.placement.size(); ++k)
       sensor.placement_columns.push_back(column(Kind::placement, i, k));
+    sensor.response_s = network.sensors[i].response_s;
+    sensor.response_column = column(Kind::response, i);
     system.sensors.push_back(std::move(sensor));
   }
   for (std::size_t i = 0; i < network.displacements.size(); ++i) {

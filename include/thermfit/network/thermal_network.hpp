@@ -44,6 +44,9 @@ struct ThermalNetwork {
     /// A sensor sits somewhere in the part that its node stands for: the reading gains share (theta_j - theta_node) for
     /// each neighbour j. A negative share: on the far side of the node.
     std::vector<std::pair<Index, double>> placement{};
+    /// By how long it shows its place in the part late (negative: early, nearer to the heat): the reading loses
+    /// response_s dtheta/dt. For a thermometer that is slow itself there is the effect sensor-lag.
+    double response_s = 0;
   };
   struct Ambient {
     enum class Rule {
@@ -70,6 +73,7 @@ struct ThermalNetwork {
     double capacity = 0.3, ambient = 0.3, conductance = 0.3, power = 0.3, um_per_K = 0.3;
     double sensor_offset_K = 0.5;
     double sensor_placement = 0.25;  ///< of each share
+    double sensor_response = 0.05;   ///< of the time constant of the sensor's node
   };
   /// An effect of the catalogue that was added: its law is looked up by name, see effects/effect.hpp.
   struct AddedEffect {
@@ -114,6 +118,16 @@ struct ThermalNetwork {
     for (std::size_t i = 0; i < links.size(); ++i)
       if ((links[i].a == a && links[i].b == b) || (links[i].a == b && links[i].b == a)) return static_cast<Index>(i);
     return -1;
+  }
+
+  /// Heat capacity of a node over all that it conducts away: how fast it can change. 0 where it is insulated. Does not
+  /// allocate.
+  double time_constant_s(Index node) const {
+    const Node& one = nodes[static_cast<std::size_t>(node)];
+    double W_per_K = one.ambient_W_per_K;
+    for (const Link& link : links)
+      if (link.a == node || link.b == node) W_per_K += link.conductance_W_per_K;
+    return W_per_K > 0 ? one.capacity_J_per_K / W_per_K : 0;
   }
 };
 

@@ -82,6 +82,8 @@ class ThermalSystem {
     Column column = -1;
     std::vector<std::pair<Index, double>> placement;  ///< neighbour and share
     std::vector<Column> placement_columns;
+    double response_s = 0;
+    Column response_column = -1;
     std::vector<BoundLaw> laws;
   };
   struct Displacement {
