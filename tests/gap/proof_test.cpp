@@ -31,7 +31,7 @@ struct Case {
     }
     found.machine.heat_sources.emplace_back();
     found.machine.heat_sources[0].input = "heater";
-    found.folds = folds_of(left_K.size());
+    found.folds = folds_of(found.machine, found.seen);
     found.calibrated.held.residual = {before};
     stages.as_simulated = {before};
     stages.calibrated = {before};

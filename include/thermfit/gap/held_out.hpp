@@ -15,10 +15,10 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// Every batch left out once: alone up to `most_folds` batches, else every most_folds-th together, so that each fold
 /// keeps all conditions. A batch that alone drives an input judges nothing and stays with the others. Fewer than two
 /// batches leave nothing to judge by: no folds.
-inline Folds folds_of(const MachineRecord& seen, std::size_t most_folds = 12) {
+inline Folds folds_of(const ThermalNetwork& network, const MachineRecord& seen, std::size_t most_folds = 12) {
   std::vector<std::size_t> judges;
   for (std::size_t b = 0; b < seen.batches(); ++b)
-    if (!drives_alone(seen, b)) judges.push_back(b);
+    if (!drives_alone(network, seen, b)) judges.push_back(b);
   if (judges.size() < 2) return {};
   Folds result(std::min(judges.size(), most_folds));
   for (std::size_t k = 0; k < judges.size(); ++k) result[k % result.size()].push_back(judges[k]);

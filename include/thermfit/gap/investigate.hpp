@@ -153,7 +153,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   Investigation result;
   result.machine = with_complete_effects(with_placements(network), library);
   result.seen = observations_of(result.machine, campaign);
-  result.folds = folds_of(result.seen);
+  result.folds = folds_of(result.machine, result.seen);
   const Inquiry inquiry{result.seen, result.machine, library, result.folds, options.threads};
   const auto say = [&](const std::string& step, double share) {
     if (options.progress) options.progress(step, share);

@@ -7,6 +7,7 @@
 
 #include "thermfit/error.hpp"
 #include "thermfit/gap/noise.hpp"
+#include "thermfit/gap/repeats.hpp"
 #include "thermfit/gap/resolution.hpp"
 #include "thermfit/network/excitation.hpp"
 
@@ -84,7 +85,8 @@ inline MachineRecord observations_of(const ThermalNetwork& network, const Campai
     channel.swing = std::sqrt(swing / count);
     channel.floor = std::max(high_frequency_sd(channel.measured), resolution_sd(channel.measured));
     channel.bounds.least_white = std::max(0.7 * channel.floor, 1e-3 * channel.swing);
-    channel.bounds.least_slow = std::hypot(lumping_tolerance * channel.swing, channel.floor);
+    channel.bounds.least_slow =
+        std::hypot(lumping_tolerance * channel.swing, channel.floor, repeat_sd(result.excitations, channel.measured));
     channel.bounds.shortest_s = 5 * shortest;
     channel.bounds.longest_s = std::max(longest / 6, 2 * channel.bounds.shortest_s);
     result.channels.push_back(std::move(channel));

@@ -7,6 +7,7 @@
 
 #include "thermfit/gap/diagnosis.hpp"
 #include "thermfit/gap/explanation.hpp"
+#include "thermfit/gap/repeats.hpp"
 #include "thermfit/gap/resolution.hpp"
 #include "thermfit/gap/shrink.hpp"
 
@@ -18,34 +19,13 @@ struct StageResiduals {
   Vector noise;  ///< by channel
 };
 
-/// Differences of batches that repeat each other (the same clock and inputs, ambient within `tolerance_K`), divided by
-/// the square root of 2: noise with no model in it. Empty where nothing was repeated.
-inline SeriesByBatch repeat_differences(const MachineRecord& seen, std::size_t channel, double tolerance_K = 0.5) {
-  SeriesByBatch result;
-  for (std::size_t a = 0; a < seen.batches(); ++a)
-    for (std::size_t b = a + 1; b < seen.batches(); ++b) {
-      const Excitation &x = seen.excitations[a], &y = seen.excitations[b];
-      if (x.samples() != y.samples() || x.inputs.cols() != y.inputs.cols() || x.time_s != y.time_s) continue;
-      if (x.inputs.cols() > 0 && x.inputs != y.inputs) continue;
-      if ((x.ambient_degC - y.ambient_degC).cwiseAbs().maxCoeff() > tolerance_K) continue;
-      if ((x.start_degC - y.start_degC).cwiseAbs().maxCoeff() > tolerance_K) continue;
-      const SeriesByBatch& measured = seen.channels[channel].measured;
-      result.push_back((measured[a] - measured[b]) / std::sqrt(2.0));
-    }
-  return result;
-}
-
 /// The noise of each channel: from repeats, else from the high-frequency part of what the best account leaves; never
 /// less than the readings' resolution adds.
 inline Vector noise_floor(const MachineRecord& seen, const ChannelResiduals& best) {
   Vector result(static_cast<Index>(seen.channels.size()));
   for (std::size_t c = 0; c < seen.channels.size(); ++c) {
-    const SeriesByBatch repeats = repeat_differences(seen, c);
-    double squares = 0, count = 0;
-    for (const Vector& r : repeats)
-      for (Index k = 0; k < r.size(); ++k)
-        if (!std::isnan(r(k))) squares += r(k) * r(k), ++count;
-    const double changes = count > 0 ? std::sqrt(squares / count) : high_frequency_sd(best[c]);
+    const double repeats = repeat_sd(seen.excitations, seen.channels[c].measured);
+    const double changes = repeats > 0 ? repeats : high_frequency_sd(best[c]);
     result(static_cast<Index>(c)) = std::max(changes, resolution_sd(seen.channels[c].measured));
   }
   return result;
