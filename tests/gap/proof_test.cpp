@@ -74,7 +74,3 @@ TEST_CASE("with one or two batches an effect is a suspicion, at even odds at mos
   REQUIRE(one.judgement.effects.size() == 1);
   CHECK(one.judgement.effects[0].confidence <= 0.5);
 }
-
-TEST_CASE("where one batch alone drives an input and yet judges, an effect is a suspicion") {
-  CHECK(Case({0.3, 0.4, 0.2, 0.3}, 2).judgement.verdict == Verdict::ambiguous);
-}

@@ -37,10 +37,9 @@ TEST_CASE(
                          << "; remains: " << said.at("remaining").at("looks_like"));
     CHECK(shrink > 20);
     CHECK(shrink > interval.at(0).get<double>() - 10);
-    CHECK(said.at("gap").at("noise") > 0.08);  // steps of .32 K
-    // What remains is beyond the noise, differs from run to run, and no cause is named for it.
-    CHECK(said.at("remaining").at("unexplained_um") > 0.3);
-    CHECK(said.at("remaining").at("looks_like").get<std::string>().find("offset per batch") != std::string::npos);
+    // What remains is what runs with the same inputs differ by, from day to day, and no cause is named for it.
+    CHECK(said.at("gap").at("noise") > 0.5);
+    CHECK(said.at("gap").at("with_effect").get<double>() < 1.5 * said.at("gap").at("noise").get<double>());
   }
 }
 

@@ -161,14 +161,18 @@ TEST_CASE("a heater that the machine file forgets is named with its input and it
   CHECK(said.at("gap").at("shrink_ci95_percent").at(0) > 90);
 }
 
-TEST_CASE("a column of the heater board that is a minute late is named as a lag of that thermometer") {
+TEST_CASE("a column of the heater board that is a minute late is told at its thermometer, as a lag or without a name") {
   REQUIRE_SHARED_DATA(data);
   Board board(data + "/real/tclab/real");
   const nlohmann::json said = board.with([](Batch& run) {
     const Vector sound = run.temperatures.values.col(0);
     for (Index row = 0; row < sound.size(); ++row) run.temperatures.values(row, 0) = later(60)(sound, row);
   });
-  CHECK(names(said, "sensor-lag", "T1"));
+  // A shifted record answers a step at once, only later: a lag improves on it and does not close it.
+  CHECK((said.at("verdict") == "unknown" || names(said, "sensor-lag", "T1")));
+  CHECK(confidence_in_others(said, {"sensor-lag"}) <= 0.5);
+  const std::string place = said.at("where").at("places").at(0).at("place");
+  CHECK((place == "T1" || place == "sensor1"));
 }
 
 TEST_CASE("a heater whose level was not logged right leaves a gap without a confident name") {

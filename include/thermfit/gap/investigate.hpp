@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -18,7 +19,7 @@ struct SearchOptions {
   int most_steps = 3;         ///< from place to place around the best
   std::size_t most_effects = 2;
   unsigned threads = 0;    ///< 0: all cores
-  double far = 2;          ///< times what is expected: a channel beyond it asks for a second effect
+  double far = 2;          ///< times what is expected: a channel beyond it asks for a second effect at once
   double tolerance = 1.5;  ///< nats at which a refit of a candidate stops
   int most_iterations = 14;
   std::function<void(const std::string& step, double share)> progress;
@@ -201,31 +202,29 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
     detail::PlaceWalk(inquiry, result, result.single, 0, refit).run(options.most_steps);
   }
 
-  // A second effect, where the best single one leaves some channel far from what can be expected. Where it leaves only
-  // little, a boundary or a start that differs from part to part of the machine may still be two places of one effect.
-  const Vector left = result.single.empty() ? Vector() : misfit_of(result.seen, result.single[0].held.residual);
-  if (options.most_effects > 1 && left.size() > 0 && excess_of(left) > 1) {
-    const std::string leading = result.single[0].effects[0].effect;
-    const Stage stage = library.at(leading).stage();
-    const bool far = left.maxCoeff() > options.far * options.far;
-    const bool spread = stage == Stage::boundary || stage == Stage::initial;
+  // A second effect on top of a first that is worth its name: what promises more than the number of candidates accounts
+  // for, and anything where the first leaves some channel far from what can be expected.
+  const double by_chance = std::log(static_cast<double>(std::max<std::size_t>(1, candidates.size())));
+  if (options.most_effects > 1 && !result.single.empty() &&
+      plausibility(result.single[0]) - plausibility(result.calibrated) > by_chance) {
+    const double left = misfit_of(result.seen, result.single[0].held.residual).maxCoeff();
+    const double least_gain = left > options.far * options.far ? 3 : by_chance / evidence_power;
     say("looking for a second effect", 0.7);
     const auto add_to = [&](const Explanation& first, std::size_t strongest) {
       const ScreeningBase base(result.seen, first.fit, library, result.machine.effects.size());
       std::vector<ThermalNetwork::AddedEffect> others;
       for (const Screened& one : result.screened)
-        if (!same_place(one.added, first.effects[0]) && (far || one.added.effect == leading))
-          others.push_back(one.added);
+        if (!same_place(one.added, first.effects[0])) others.push_back(one.added);
       std::vector<Screened> screened = screen(base, library, others, options.threads);
       std::vector<Explanation> pairs =
-          refits(inquiry, finalists(screened, strongest, 3, 0.3), first.effects, first.fit, refit, 3);
+          refits(inquiry, finalists(screened, strongest, least_gain, 0.3), first.effects, first.fit, refit, 3);
       for (Explanation& pair : pairs) {
         pair.steps = first.steps;
         result.several.push_back(std::move(pair));
       }
       detail::best_first(result.several);
     };
-    if (far || spread) add_to(result.single[0], 5);
+    add_to(result.single[0], 5);
     if (!result.several.empty()) {
       // Swap: hold the second effect and look for the first anew.
       const ThermalNetwork::AddedEffect second = result.several[0].effects[1];

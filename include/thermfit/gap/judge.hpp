@@ -138,13 +138,12 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   if (found.single.empty()) return result;
 
   const Explanation& single = found.single.front();
-  const double after_one = excess_of(misfit_of(found.seen, single.held.residual));
   bool two = false;
   if (!found.several.empty()) {
     const Explanation& pair = found.several.front();
     const double gained =
         plausibility(pair) - plausibility(single) - std::log(static_cast<double>(found.screened.size()));
-    two = gained > 0 && excess_of(misfit_of(found.seen, pair.held.residual)) < (1 - options.second_closes) * after_one;
+    two = gained > 0 && closure_of(found.seen, single.held, pair.held).share > options.second_closes;
   }
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
   result.nearest = &accounts.front();

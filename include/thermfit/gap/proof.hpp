@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "thermfit/gap/judge.hpp"
-#include "thermfit/gap/lone_input.hpp"
 #include "thermfit/gap/stages.hpp"
 
 namespace thermfit {
@@ -24,23 +23,15 @@ inline bool shrinks_somewhere(const MachineRecord& seen, const StageResiduals& s
   return false;
 }
 
-/// Whether a batch judges that cannot: it alone drives an input.
-inline bool judged_by_lone_batch(const Investigation& found) {
-  for (const std::vector<std::size_t>& fold : found.folds)
-    for (const std::size_t batch : fold)
-      if (drives_alone(found.machine, found.seen, batch)) return true;
-  return false;
-}
-
-/// Takes back what held-out batches do not bear out. Without any, or where one of them cannot judge, what fits best is
-/// a suspicion: `ambiguous`, at most even odds. With some, but no channel that shrinks beyond doubt: nothing is named.
-/// `stages` are the residuals with what `judgement` names; they follow it.
+/// Takes back what held-out batches do not bear out. With fewer than three, what fits best is a suspicion: `ambiguous`,
+/// at most even odds. With some, but no channel that shrinks beyond doubt: nothing is named. `stages` are the residuals
+/// with what `judgement` names; they follow it.
 inline void demand_proof(Judgement& judgement, StageResiduals& stages, const Investigation& found,
                          const JudgingOptions& options, std::uint64_t seed) {
   if (judgement.effects.empty()) return;
   const bool offset = std::any_of(judgement.effects.begin(), judgement.effects.end(),
                                   [](const FoundEffect& one) { return one.effect == "sensor-offset"; });
-  if (found.folds.size() < 3 || judged_by_lone_batch(found)) {
+  if (found.folds.size() < 3) {
     judgement.verdict = Verdict::ambiguous;
     for (FoundEffect& one : judgement.effects) one.confidence = std::min(one.confidence, 0.5);
     if (found.folds.empty()) return;
