@@ -47,6 +47,8 @@ Options parse(const std::vector<std::string>& words) {
       options.runner.seconds_allowed = static_cast<int>(count());
     else if (word == "--oracle")
       options.oracle = true;
+    else if (word == "--fresh")
+      options.runner.fresh = true;
     else if (word == "--each")
       options.each = true;
     else if (word == "--require")
