@@ -39,7 +39,10 @@ Exit run(const Arguments& arguments, Console& console) {
   const EffectLibrary effects = standard_effects();
   ThermalNetwork network = read_machine(files.front(), effects);
   files.erase(files.begin());
-  if (!arguments.has("--fixed-placement")) network = with_placements(std::move(network));
+  if (arguments.has("--fixed-placement"))
+    network.uncertainty.sensor_response = 0;
+  else
+    network = with_placements(std::move(network));
   const MachineRecord seen = observations_of(network, read_campaign(arguments, console, files));
   CalibrationOptions how;
   how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "thermfit/effects/place.hpp"
-#include "thermfit/gap/explanation.hpp"
+#include "thermfit/gap/place_walk.hpp"
 
 namespace thermfit {
 
@@ -37,113 +36,6 @@ struct Investigation {
   std::vector<Explanation> single;   ///< refitted candidates, most plausible first
   std::vector<Explanation> several;  ///< with two and more effects, most plausible first
 };
-
-namespace detail {
-
-inline void best_first(std::vector<Explanation>& explanations) {
-  std::stable_sort(explanations.begin(), explanations.end(),
-                   [](const Explanation& a, const Explanation& b) { return plausibility(a) > plausibility(b); });
-}
-
-/// Walks from place to place: the catalogue's list of places is coarse.
-class PlaceWalk {
- public:
-  /// Over the accounts, most plausible first, of which the leader's effect `position` is to find its place; it becomes
-  /// the last effect of the accounts tried.
-  PlaceWalk(const Inquiry& inquiry, const Investigation& found, std::vector<Explanation>& accounts,
-            std::size_t position, const MapFitOptions& refit)
-      : inquiry_(inquiry), found_(found), accounts_(accounts), position_(position), refit_(refit) {}
-
-  /// At most `most_steps` steps to the best set of nodes, or pair, around the leader; at each, all nodes whose coming
-  /// or going helped are tried together too.
-  void run(int most_steps) {
-    for (int step = 0; step < most_steps; ++step) {
-      leader_ = accounts_.front();
-      std::vector<Screened> near;
-      for (const std::string& place : places_beside(found_.machine, moving().location))
-        if (allowed(place) && !tried(place)) near.push_back(at(place));
-      std::vector<Explanation> reached = refitted(near, 1, 2);
-      const auto [place, steps] = together(reached);
-      if (steps > 1 && !tried(place))
-        for (Explanation& one : refitted({at(place)}, steps, 1)) reached.push_back(std::move(one));
-      for (Explanation& one : reached) accounts_.push_back(std::move(one));
-      best_first(accounts_);
-      if (same_place(accounts_.front().effects.back(), moving())) break;
-      position_ = leader_.effects.size() - 1;
-    }
-  }
-
- private:
-  const ThermalNetwork::AddedEffect& moving() const { return leader_.effects[position_]; }
-
-  bool listed(const std::string& place) const {
-    return std::any_of(found_.screened.begin(), found_.screened.end(), [&](const Screened& one) {
-      return one.added.effect == moving().effect && one.added.driver == moving().driver && one.added.location == place;
-    });
-  }
-  /// Sets of nodes for an effect that takes sets; single nodes and pairs as the catalogue lists them.
-  bool allowed(const std::string& place) const {
-    const bool set = place == "all" || place.find('+') != std::string::npos;
-    const bool takes_sets = std::any_of(found_.screened.begin(), found_.screened.end(), [&](const Screened& one) {
-      return one.added.effect == moving().effect && one.added.location.find('+') != std::string::npos;
-    });
-    return (set && takes_sets) || listed(place);
-  }
-  bool tried(const std::string& place) const {
-    ThermalNetwork::AddedEffect moved = moving();
-    moved.location = place;
-    return std::any_of(accounts_.begin(), accounts_.end(), [&](const Explanation& one) {
-      return one.effects.size() == leader_.effects.size() &&
-             std::any_of(one.effects.begin(), one.effects.end(),
-                         [&](const auto& effect) { return same_place(effect, moved); });
-    });
-  }
-  Screened at(const std::string& place) const {
-    Screened one;
-    one.added = moving();
-    one.added.location = place;
-    one.start = leader_.fit.t.head(found_.calibrated.fit.t.size());
-    return one;
-  }
-  std::vector<Explanation> refitted(const std::vector<Screened>& chosen, int steps, std::size_t to_the_end) const {
-    std::vector<ThermalNetwork::AddedEffect> kept = leader_.effects;
-    kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(position_));
-    std::vector<Explanation> result = refits(inquiry_, chosen, kept, leader_.fit, refit_, to_the_end);
-    for (Explanation& one : result) one.steps = listed(one.effects.back().location) ? 0 : leader_.steps + steps;
-    return result;
-  }
-  /// The place that takes all single steps that helped, and how many they are.
-  std::pair<std::string, int> together(const std::vector<Explanation>& reached) const {
-    int helped = 0;
-    std::vector<Index> nodes;
-    for (const Explanation& one : reached) {
-      const std::string& place = one.effects.back().location;
-      if (plausibility(one) <= plausibility(leader_) || (place != "all" && place.find('+') == std::string::npos))
-        continue;
-      const std::vector<Index> before = nodes_at(found_.machine, moving().location);
-      const std::vector<Index> after = nodes_at(found_.machine, place);
-      if (++helped == 1) nodes = before;
-      for (Index i = 0; i < found_.machine.node_count(); ++i) {
-        const bool was = std::count(before.begin(), before.end(), i) > 0,
-                   is = std::count(after.begin(), after.end(), i) > 0;
-        if (!was && is) nodes.push_back(i);
-        if (was && !is) nodes.erase(std::remove(nodes.begin(), nodes.end(), i), nodes.end());
-      }
-    }
-    if (nodes.empty()) return {"", 0};
-    std::sort(nodes.begin(), nodes.end());
-    return {place_of(found_.machine, nodes), helped};
-  }
-
-  const Inquiry& inquiry_;
-  const Investigation& found_;
-  std::vector<Explanation>& accounts_;
-  std::size_t position_;
-  const MapFitOptions& refit_;
-  Explanation leader_;
-};
-
-}  // namespace detail
 
 /// Tries the whole catalogue on a campaign: calibration alone; every candidate screened; the finalists refitted
 /// together with calibration; the places around the best; then a second effect on top of the best, with a swap of the
@@ -175,6 +67,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   thorough.most_iterations = 40;
   result.calibrated = explained_by(inquiry, {}, {}, {}, thorough);
 
+  const Index own = result.calibrated.fit.t.size();
   say("screening " + std::to_string(candidates.size()) + " candidates", 0.1);
   MapFitOptions refit;
   refit.tolerance = options.tolerance;
@@ -199,7 +92,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
     for (std::size_t i = 0; i < again.size(); ++i)
       if (again[i].fit.log_posterior > result.single[i].fit.log_posterior) result.single[i] = std::move(again[i]);
     detail::best_first(result.single);
-    detail::PlaceWalk(inquiry, result, result.single, 0, refit).run(options.most_steps);
+    detail::PlaceWalk(inquiry, result.screened, own, result.single, 0, refit).run(options.most_steps);
   }
 
   // A second effect on top of a first that is worth its name: what promises more than the number of candidates accounts
@@ -242,7 +135,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   }
   if (!result.several.empty() && plausibility(result.several[0]) > plausibility(result.single[0]))
     for (const std::size_t position : {1, 0})
-      detail::PlaceWalk(inquiry, result, result.several, position, refit).run(2);
+      detail::PlaceWalk(inquiry, result.screened, own, result.several, position, refit).run(2);
   say("judging", 0.95);
   return result;
 }
