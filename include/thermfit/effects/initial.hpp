@@ -22,7 +22,8 @@ class InitialGradient : public Effect {
     const bool taken_over = setting.network.initial.rule == ThermalNetwork::Initial::Rule::measured;
     for (const std::string& place : spread_places(setting.network)) {
       result.push_back({name(), place, "", {{"rise_K", 0}}});
-      if (!taken_over && !sensors_at(setting.network, place).empty())
+      // Everywhere at once is no gradient, but the error of the one reading of the room at the first sample.
+      if (place != "all" && !taken_over && !sensors_at(setting.network, place).empty())
         result.push_back({name(), place, "measured", {{"share", 0}}});
     }
     return result;
