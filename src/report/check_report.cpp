@@ -5,6 +5,7 @@
 
 #include "cli/table.hpp"
 #include "thermfit/batch/series_scale.hpp"
+#include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -96,6 +97,22 @@ Json batch_json(const CheckedBatch& one) {
           {"findings", findings}};
 }
 
+/// A batch without a clock or thermal errors may well have them, under names that do not say so.
+std::string without_role(const std::vector<CheckedBatch>& checked) {
+  std::string text;
+  for (const auto& [batch, found] : checked) {
+    std::string lacks;
+    if (!batch.has_time()) lacks = "no clock (--time-column NAME)";
+    if (batch.errors.count() == 0)
+      lacks += (lacks.empty() ? "" : ", ") + std::string("no thermal error (--errors NAMES)");
+    if (lacks.empty()) continue;
+    lacks +=
+        "; " + (batch.inputs.count() == 0 ? "no other columns" : "taken as inputs: " + name_list(batch.inputs.names));
+    text += wrap(batch.name + ": " + lacks, 80, 4);
+  }
+  return text.empty() ? text : text + '\n';
+}
+
 }  // namespace
 
 std::string check_text(const std::vector<CheckedBatch>& checked) {
@@ -119,7 +136,7 @@ std::string check_text(const std::vector<CheckedBatch>& checked) {
                     80, 4);
     }
   }
-  std::string text = overview.text() + '\n';
+  std::string text = overview.text() + '\n' + without_role(checked);
   if (findings > 0) text += table.text() + '\n' + notes + '\n';
   const std::string faulty_of = findings > 0 && checked.size() > 1 ? std::to_string(faulty) + " of " : "";
   return text + plural(findings, "finding", "findings") + " in " + faulty_of +
