@@ -17,7 +17,7 @@ struct Campaign {
 };
 
 /// Batches kept back in every case, to see how far a claimed shrink holds.
-constexpr int fresh_batches = 5;
+constexpr int fresh_batches = 20;  ///< so many that the shrink on them is as good as the true one
 
 /// An Ornstein-Uhlenbeck course of standard deviation 1 at equal steps.
 inline Vector wander(Random& random, Index rows, double step_s, double memory_s) {
@@ -79,9 +79,11 @@ inline Campaign random_campaign(Random& random, const Machine& machine, const st
   const double draught_memory_s = random.log_uniform(600, 3000);
 
   campaign.recorded = static_cast<std::size_t>(count);
+  Random later = random.fork(1);
   for (int b = 0; b < count + fresh_batches; ++b) {
     // Fresh batches spread over the same range of room temperatures.
     const double place = b < count ? b : (b - count + .5) * (count - 1) / fresh_batches;
+    Random& draw = b < count ? random : later;
     Experiment batch;
     const int label = 1 + (b < count ? b : b - count);
     batch.name = (b < count ? "K" : "F") + std::string(label < 10 ? "0" : "") + std::to_string(label);
@@ -92,16 +94,16 @@ inline Campaign random_campaign(Random& random, const Machine& machine, const st
     if (coolant_logged) batch.inputs.push_back("coolant");
     if (campaign.pump_logged) batch.inputs.push_back("pump");
     batch.input = Matrix::Zero(samples, static_cast<Index>(batch.inputs.size()));
-    batch.input.col(0) = speed_course(random, protocol, samples, levels, only);
+    batch.input.col(0) = speed_course(draw, protocol, samples, levels, only);
     if (machine.feeds && !poor)
-      batch.input.col(batch.column("feed_mm_min")) = random_levels(random, samples, {0, 1500, 3000}, 4, 60);
-    if (coolant_logged) batch.input.col(batch.column("coolant")) = random_levels(random, samples, {0, 1}, 5, 50);
-    if (campaign.pump_logged) batch.input.col(batch.column("pump")) = random_levels(random, samples, {0, 1}, 12, 60);
+      batch.input.col(batch.column("feed_mm_min")) = random_levels(draw, samples, {0, 1500, 3000}, 4, 60);
+    if (coolant_logged) batch.input.col(batch.column("coolant")) = random_levels(draw, samples, {0, 1}, 5, 50);
+    if (campaign.pump_logged) batch.input.col(batch.column("pump")) = random_levels(draw, samples, {0, 1}, 12, 60);
 
     const Index rows = batch.fine_rows();
-    const double at = coldest + (warmest - coldest) * (place + random.uniform(-.3, .3)) / std::max(1, count - 1);
-    const double period_s = random.uniform(4, 12) * 3600, phase = random.uniform(0, 6.283185307179586);
-    const Vector slow = wander(random, rows, batch.step_s(), 5400);
+    const double at = coldest + (warmest - coldest) * (place + draw.uniform(-.3, .3)) / std::max(1, count - 1);
+    const double period_s = draw.uniform(4, 12) * 3600, phase = draw.uniform(0, 6.283185307179586);
+    const Vector slow = wander(draw, rows, batch.step_s(), 5400);
     batch.air_degC.resize(rows);
     for (Index row = 0; row < rows; ++row)
       batch.air_degC[row] =
@@ -111,9 +113,9 @@ inline Campaign random_campaign(Random& random, const Machine& machine, const st
 
     // Draughts: one course for the room and one for each part, felt through its own exchange with the air.
     batch.draught_K = Matrix::Zero(rows, machine.plant.cells());
-    const Vector room = wander(random, rows, batch.step_s(), draught_memory_s);
+    const Vector room = wander(draw, rows, batch.step_s(), draught_memory_s);
     for (const Lump& lump : machine.lumps) {
-      const Vector own = draught * (.5 * room + wander(random, rows, batch.step_s(), draught_memory_s));
+      const Vector own = draught * (.5 * room + wander(draw, rows, batch.step_s(), draught_memory_s));
       for (const Index cell : lump.cells) batch.draught_K.col(cell) = own;
     }
     campaign.batches.push_back(std::move(batch));

@@ -114,7 +114,7 @@ struct Runner {
     }
     mark.seconds = seconds;
     if (fresh && mark.named && fs::is_directory(one.folder / "fresh")) mark.fresh_shrink_percent = shrink_on_fresh(one);
-    if (with_oracle && !one.truth.effects.empty() && one.truth.detectable()) {
+    if (with_oracle && !one.truth.effects.empty() && one.truth.detectable) {
       std::vector<std::string> names;
       for (const TrueEffect& effect : one.truth.effects) names.push_back(effect.names.front());
       if (const auto found = document(one, ".oracle", {"--effects", joined(names, ",")}, ignored))

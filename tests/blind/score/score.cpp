@@ -101,10 +101,15 @@ int run(const Options& options) {
                   : mark.failed ? "  FAIL  "
                   : mark.in_set ? "  set   "
                                 : "  wrong ")
-              << cases[i].truth.family << (cases[i].truth.detectable() ? "" : " (hidden)") << ": " << mark.verdict
-              << " " << mark.said
-              << (mark.claims.empty() ? "" : " " + thermfit::fixed_text(mark.claims[0].confidence, 2)) << " shrink "
-              << thermfit::fixed_text(mark.shrink_percent, 0) << "\n";
+              << cases[i].truth.family << (cases[i].truth.detectable ? "" : " (hidden)") << ": " << mark.verdict << " "
+              << mark.said << (mark.claims.empty() ? "" : " " + thermfit::fixed_text(mark.claims[0].confidence, 2))
+              << " shrink " << thermfit::fixed_text(mark.shrink_percent, 0);
+    if (mark.interval)
+      std::cout << " in " << thermfit::fixed_text(mark.interval->first, 0) << " … "
+                << thermfit::fixed_text(mark.interval->second, 0);
+    if (std::isfinite(mark.fresh_shrink_percent))
+      std::cout << ", fresh " << thermfit::fixed_text(mark.fresh_shrink_percent, 0);
+    std::cout << "\n";
   }
   std::cout << blind::text_of(summary);
   const auto figures = summary.figures();

@@ -52,7 +52,7 @@ struct Summary {
   void add(const Truth& truth, const Mark& mark) {
     if (mark.failed) ++failed;
     auto& [seen, first, set, at, verdict] = by_family[truth.effects.size() > 1 ? "pairs" : truth.family];
-    seen.add(truth.detectable());
+    seen.add(truth.detectable);
     verdict.add(mark.verdict_right);
     if (std::isfinite(mark.seconds)) seconds.push_back(mark.seconds);
     confident_wrong.add(mark.confident_wrong);
@@ -63,10 +63,10 @@ struct Summary {
     } else if (truth.verdict == "miscalibration") {
       miscalibration_right.add(mark.verdict_right);
       false_alarm_miscalibration.add(mark.failed || mark.named || mark.verdict == "unknown");
+    } else if (!truth.detectable) {
+      hidden_honest.add(!mark.failed && !mark.confident_wrong);
     } else if (truth.verdict == "unknown") {
       unknown.add(mark.verdict_right);
-    } else if (!truth.detectable()) {
-      hidden_honest.add(!mark.failed && !mark.confident_wrong);
     } else if (truth.poor) {
       // One speed: naming the group that holds the truth is all that can be asked.
       hidden_honest.add(!mark.failed && !mark.confident_wrong);
@@ -87,7 +87,7 @@ struct Summary {
       if (mark.interval && std::isfinite(mark.fresh_shrink_percent))
         coverage.add(mark.interval->first <= mark.fresh_shrink_percent &&
                      mark.fresh_shrink_percent <= mark.interval->second);
-    } else if (truth.verdict == "effect" && truth.detectable() && mark.oracle_shrink_percent > 5) {
+    } else if (truth.verdict == "effect" && truth.detectable && mark.oracle_shrink_percent > 5) {
       against_oracle.push_back(0);
     }
   }

@@ -17,7 +17,6 @@ using Json = nlohmann::json;
 struct TrueEffect {
   std::vector<std::string> names;      ///< effect and what counts as the same
   std::vector<std::string> locations;  ///< all acceptable
-  bool detectable = true;              ///< calibration alone cannot hide it
 };
 
 struct Truth {
@@ -26,10 +25,7 @@ struct Truth {
   std::vector<TrueEffect> effects;
   std::vector<std::string> without;  ///< taken out of the catalogue
   bool poor = false;                 ///< one speed only: "cannot tell" is a right answer
-
-  bool detectable() const {
-    return std::all_of(effects.begin(), effects.end(), [](const TrueEffect& one) { return one.detectable; });
-  }
+  bool detectable = true;            ///< calibration and noise cannot hide any of it
 };
 
 struct Case {
@@ -52,13 +48,13 @@ inline Truth truth_of(const Json& given) {
   for (const Json& one : given.at("truth")) {
     truth.family += (truth.family.empty() ? "" : " + ") + one.at("family").get<std::string>();
     truth.verdict = one.value("verdict", "effect");
+    truth.detectable = truth.detectable && one.value("detectability", detectable_from) >= detectable_from;
     if (!one.contains("effect")) continue;
     TrueEffect effect;
     effect.names = {one.at("effect").get<std::string>()};
     if (one.contains("also"))
       for (const Json& name : one["also"]) effect.names.push_back(name);
     for (const Json& place : one.at("location")) effect.locations.push_back(place);
-    effect.detectable = one.value("detectability", detectable_from) >= detectable_from;
     truth.effects.push_back(effect);
   }
   if (given.contains("without"))
