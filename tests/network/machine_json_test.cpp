@@ -53,7 +53,7 @@ TEST_CASE("a machine written and read again is the same to the last bit", "[netw
 TEST_CASE("all rules for ambient, start and displacement survive the round trip", "[network][json]") {
   Json changed = document();
   for (const Json& ambient : {Json("T9"), Json(21.5), Json("initial"), Json{{"first_sample_of", "T9"}}})
-    for (const Json& initial : {Json("ambient"), Json("measured")}) {
+    for (const Json& initial : {Json("ambient"), Json("measured"), Json(0.25)}) {
       changed["ambient"] = ambient;
       changed["initial"] = initial;
       const Json again = machine_to_json(machine_from_json(changed, "m.json", library));

@@ -127,13 +127,33 @@ TEST_CASE("twice as many samples under the same inputs give the same temperature
   for (Index k = 0; k < rows; ++k) CHECK((one.row(k) - two.row(2 * k)).cwiseAbs().maxCoeff() < 1e-10);
 }
 
+TEST_CASE("the share of the first readings in the start leads from ambient to measured", "[network]") {
+  ThermalNetwork network = example_network();
+  const std::vector<Excitation> drive{excitation_of(network, example_batch())};
+  const auto start = [&] { return Vector(simulate(network, drive, no_effects).front().nodes_degC.row(0)); };
+  const Vector ambient = start();
+  network.initial.share = 1;
+  const Vector all = start();
+  network.initial.share = 0.25;
+  CHECK((start() - (ambient + 0.25 * (all - ambient))).cwiseAbs().maxCoeff() < 1e-12);
+  network.initial = {ThermalNetwork::Initial::Rule::measured, {}, 0};
+  const std::vector<Excitation> measured{excitation_of(network, example_batch())};
+  const Vector as_read = simulate(network, measured, no_effects).front().nodes_degC.row(0);
+  CHECK((as_read - all).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((all - ambient).cwiseAbs().maxCoeff() > 1e-3);
+}
+
 TEST_CASE("sensitivities of every parameter agree with central differences", "[network]") {
   ThermalNetwork network = example_network();
-  const bool measured_start = GENERATE(false, true);
-  if (measured_start) network.initial.rule = ThermalNetwork::Initial::Rule::measured;
+  const int start = GENERATE(0, 1, 2);
+  if (start == 1) network.initial.rule = ThermalNetwork::Initial::Rule::measured;
+  if (start == 2) {
+    network.initial.share = 0.4;
+    network.uncertainty.start_share = 1;
+  }
   const std::vector<Excitation> drive = excitations_of(network, {example_batch(0), example_batch(1)});
   const std::vector<Parameter> parameters = calibration_parameters(network, no_effects);
-  REQUIRE(parameters.size() == 5 + 5 + 4 + 2 + 4 + 4 + 4);
+  REQUIRE(parameters.size() == 5 + 5 + 4 + 2 + 4 + 4 + 4 + (start == 2 ? 1 : 0));
   const std::vector<Simulation> exact = simulate(network, drive, no_effects, parameters);
   const Vector values = values_of(network, parameters);
   for (std::size_t j = 0; j < parameters.size(); ++j) {

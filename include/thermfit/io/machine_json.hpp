@@ -144,8 +144,10 @@ class MachineReader {
     using Rule = ThermalNetwork::Initial::Rule;
     if (node.json().is_string())
       network_.initial.rule = node.choice({"ambient", "measured"}) == "ambient" ? Rule::ambient : Rule::measured;
+    else if (node.json().is_number())
+      network_.initial = {Rule::ambient, {}, node.number(0, 1)};
     else
-      network_.initial = {Rule::given, by_node(node)};
+      network_.initial = {Rule::given, by_node(node), 0};
   }
 
   void read_uncertainty(const JsonNode& node) {
@@ -260,7 +262,8 @@ inline Json machine_to_json(const ThermalNetwork& network) {
     if (sensor.response_s != 0) entry["response_s"] = sensor.response_s;
   }
   using Start = ThermalNetwork::Initial::Rule;
-  document["initial"] = network.initial.rule == Start::ambient    ? Json("ambient")
+  document["initial"] = network.initial.share != 0                ? Json(network.initial.share)
+                        : network.initial.rule == Start::ambient  ? Json("ambient")
                         : network.initial.rule == Start::measured ? Json("measured")
                                                                   : detail::by_node_json(network, network.initial.degC);
   const ThermalNetwork::Uncertainty& sd = network.uncertainty;

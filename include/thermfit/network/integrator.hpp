@@ -83,6 +83,7 @@ class Integrator {
         if (sensor.column >= 0) tangents_(node, state_column(sensor.column)) -= share;
       }
     }
+    if (system_.start_by_readings.share != 0 || system_.start_by_readings.column >= 0) start_by_readings();
     const Moment now = drive_.moment(0, drive_.time_s(0), nullptr);
     for (const auto& [node, law] : system_.starts) {
       temperatures_(node) += system_.value(law, now);
@@ -96,6 +97,30 @@ class Integrator {
       tangents_.row(i) = tangents_.row(hidden.starts_like);
     }
     rate_bound_ = state_flow_rate();
+  }
+
+  /// Moves every node with sensors towards what they read first.
+  void start_by_readings() {
+    const Excitation& excitation = drive_.excitation();
+    const auto& [share, own_column, node_of_sensor] = system_.start_by_readings;
+    const Vector& first_degC = excitation.first_reading_degC;
+    const Index sensors = std::min(static_cast<Index>(node_of_sensor.size()), first_degC.size());
+    const auto node_read_by = [&](Index s) {
+      return std::isfinite(first_degC(s)) ? node_of_sensor[static_cast<std::size_t>(s)] : -1;
+    };
+    Vector sensors_at = Vector::Zero(nodes_);
+    for (Index s = 0; s < sensors; ++s)
+      if (node_read_by(s) >= 0) sensors_at(node_read_by(s)) += 1;
+    for (Index s = 0; s < sensors; ++s) {
+      const Index node = node_read_by(s);
+      if (node < 0) continue;
+      const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
+      const double part = 1 / sensors_at(node);
+      const double rise = first_degC(s) - sensor.offset_K - excitation.ambient_degC(0);
+      temperatures_(node) += share * part * rise;
+      if (sensor.column >= 0) tangents_(node, state_column(sensor.column)) -= share * part;
+      if (own_column >= 0) tangents_(node, state_column(own_column)) += part * rise;
+    }
   }
 
   /// Fastest rate at which the state-dependent heat could move a node, 15 K above the start.

@@ -16,9 +16,20 @@ namespace thermfit {
 /// Its working coordinate t is 0 at the prior's mean and counts prior standard deviations:
 /// value = mean exp(sd t) where `logarithmic`, else mean + sd t. So the prior of every t is N(0, 1).
 struct Parameter {
-  enum class Kind { capacity, ambient, conductance, power, expansion, sensor_offset, placement, response, effect };
+  enum class Kind {
+    capacity,
+    ambient,
+    conductance,
+    power,
+    expansion,
+    sensor_offset,
+    placement,
+    response,
+    start,
+    effect
+  };
   Kind kind = Kind::capacity;
-  std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, sensor, sensor, effect
+  std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, sensor, sensor, –, effect
   std::size_t part =
       0;             ///< entry of the displacement's um_per_K or of the sensor's placement, or parameter of the effect
   std::string name;  ///< "capacity of head_front"
@@ -57,6 +68,8 @@ void visit_value(Network& network, const Parameter& parameter, Take take) {
       return take(network.sensors[parameter.item].placement[parameter.part].second);
     case Kind::response:
       return take(network.sensors[parameter.item].response_s);
+    case Kind::start:
+      return take(network.initial.share);
     case Kind::effect:
       return take(network.effects[parameter.item].parameters[parameter.part].second);
   }
@@ -100,8 +113,8 @@ inline ThermalNetwork with_placements(ThermalNetwork network) {
 }
 
 /// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
-/// sensor offsets, placements and responses, then each effect's own (network.effects must be complete). Numbers that
-/// are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
+/// sensor offsets, placements and responses, the start, then each effect's own (network.effects must be complete).
+/// Numbers that are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
 inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& network, const EffectLibrary& effects) {
   using Kind = Parameter::Kind;
   std::vector<Parameter> result;
@@ -152,6 +165,10 @@ inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& netwo
       linear(Kind::response, i, 0, "response of " + sensor.column, "s", sensor.response_s,
              sd.sensor_response * network.time_constant_s(sensor.node));
   }
+  if (network.initial.rule == ThermalNetwork::Initial::Rule::ambient)
+    if (sd.start_share > 0)
+      result.push_back({Kind::start, 0, 0, "share of the first readings in the start", "", false, network.initial.share,
+                        sd.start_share, 0, 1});
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     const ThermalNetwork::AddedEffect& added = network.effects[e];
     const std::vector<EffectParameter> own = effects.at(added.effect).parameters(network, added);

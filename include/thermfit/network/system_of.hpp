@@ -47,7 +47,8 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
   system.own_nodes = network.node_count();
   system.reference_degC = network.reference_degC;
   system.columns = static_cast<Index>(parameters.size());
-  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
+  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured ||
+                                  network.initial.share != 0 || column(Kind::start, 0) >= 0;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Kind kind = parameters[j].kind;
     if (kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&
@@ -90,6 +91,9 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
     sensor.response_column = column(Kind::response, i);
     system.sensors.push_back(std::move(sensor));
   }
+  system.start_by_readings = {network.initial.share, column(Kind::start, 0), {}};
+  for (const ThermalNetwork::Sensor& sensor : network.sensors)
+    system.start_by_readings.node_of_sensor.push_back(sensor.node);
   for (std::size_t i = 0; i < network.displacements.size(); ++i) {
     ThermalSystem::Displacement output;
     output.zero_at_first_sample = network.displacements[i].zero_at_first_sample;

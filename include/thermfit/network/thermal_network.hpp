@@ -67,6 +67,9 @@ struct ThermalNetwork {
     };
     Rule rule = Rule::ambient;
     std::vector<std::pair<Index, double>> degC;
+    /// Under Rule::ambient: nodes with sensors start by this share of their first rise above ambient (sensors less
+    /// offset) off it. 1 is Rule::measured.
+    double share = 0;
   };
   /// Prior standard deviations of the calibration: relative, except for the sensor offset.
   struct Uncertainty {
@@ -74,6 +77,7 @@ struct ThermalNetwork {
     double sensor_offset_K = 0.5;
     double sensor_placement = 0.25;  ///< of each share
     double sensor_response = 0.05;   ///< of the time constant of the sensor's node
+    double start_share = 0;          ///< of Initial::share; 0: not moved
   };
   /// An effect of the catalogue that was added: its law is looked up by name, see effects/effect.hpp.
   struct AddedEffect {

@@ -86,6 +86,12 @@ class ThermalSystem {
     Column response_column = -1;
     std::vector<BoundLaw> laws;
   };
+  /// See ThermalNetwork::Initial::share.
+  struct Start {
+    double share = 0;
+    Column column = -1;
+    std::vector<Index> node_of_sensor;  ///< whatever an effect makes the sensor show later
+  };
   struct Displacement {
     bool zero_at_first_sample = true;
     std::vector<std::pair<Index, double>> um_per_K;
@@ -203,6 +209,7 @@ class ThermalSystem {
   std::vector<BoundLaw> ambient_laws;
   std::vector<BoundLaw> delays;
   std::vector<Sensor> sensors;
+  Start start_by_readings;
   std::vector<Displacement> displacements;
   std::vector<BoundLaw::Owner> owners;  ///< one for each effect
   Index columns = 0;                    ///< parameters whose sensitivities are wanted
