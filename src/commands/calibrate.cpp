@@ -3,6 +3,7 @@
 #include "commands/commands.hpp"
 #include "report/calibration_report.hpp"
 #include "thermfit/effects/catalogue.hpp"
+#include "thermfit/gap/start_share.hpp"
 #include "thermfit/io/atomic_file.hpp"
 #include "thermfit/io/machine_json.hpp"
 
@@ -11,9 +12,9 @@ namespace {
 
 const char* const details =
     "Moves every number of the machine file - capacities, conductances, powers, expansions, sensor offsets and "
-    "placements, and the parameters of its effects - to the values most probable after the batches, each held by what "
-    "was known of it before (`uncertainty` in the file). Channels are weighted by their own residual, and correlated "
-    "residuals count as the few independent ones that they are.\n"
+    "placements, by how much its parts start off the room, and the parameters of its effects - to the values most "
+    "probable after the batches, each held by what was known of it before (`uncertainty` in the file). Channels are "
+    "weighted by their own residual, and correlated residuals count as the few independent ones that they are.\n"
     "\n"
     "Prints each channel's rms before and after, what moved and by how many prior standard deviations, and what these "
     "data cannot tell: numbers they do not pin, and numbers they know only together. -o writes the calibrated "
@@ -28,7 +29,8 @@ std::vector<Option> options() {
       {"--all", "", "show every parameter, not only those that moved", 0, false},
       {"--starts", "N", "fits from different points, the best is kept; 1 to 100 (default: 3)", 0, false},
       {"--seed", "N", "of the points drawn (default: 1)", 0, false},
-      {"--fixed-placement", "", "every sensor reads exactly its node", 0, false}};
+      {"--fixed-placement", "", "every sensor reads exactly its node, and every node starts where the file says", 0,
+       false}};
   for (Option& option : campaign_options()) all.push_back(std::move(option));
   return all;
 }
@@ -39,11 +41,13 @@ Exit run(const Arguments& arguments, Console& console) {
   const EffectLibrary effects = standard_effects();
   ThermalNetwork network = read_machine(files.front(), effects);
   files.erase(files.begin());
-  if (arguments.has("--fixed-placement"))
+  const bool fixed = arguments.has("--fixed-placement");
+  if (fixed)
     network.uncertainty.sensor_response = 0;
   else
     network = with_placements(std::move(network));
   const MachineRecord seen = observations_of(network, read_campaign(arguments, console, files));
+  if (!fixed) network.uncertainty.start_share = start_share_sd(network, seen);
   CalibrationOptions how;
   how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));
   how.seed = static_cast<std::uint64_t>(arguments.integer("--seed", 0, 1L << 53).value_or(1));

@@ -38,6 +38,28 @@ TEST_CASE("parameters that are off are miscalibration, and those that moved are 
   CHECK(found.calibration[0].to == Approx(225).epsilon(0.05));
 }
 
+TEST_CASE("parts that start a little off the room are no fault") {
+  DiagnoseOptions options;
+  options.search.threads = 1;
+  const Diagnosis found =
+      diagnose(bench::machine(), bench::campaign(bench::machine(), 6, 11, 0.1), standard_effects(), options);
+  CHECK(found.effects.empty());
+  CHECK((found.verdict == Verdict::none || found.verdict == Verdict::miscalibration));
+  CHECK(std::any_of(found.calibration.begin(), found.calibration.end(), [](const CalibrationMove& one) {
+    return one.parameter == "share of the first readings in the start" && one.to > 0.5;
+  }));
+}
+
+TEST_CASE("parts that start far off the room are an initial gradient") {
+  DiagnoseOptions options;
+  options.search.threads = 1;
+  const Diagnosis found =
+      diagnose(bench::machine(), bench::campaign(bench::machine(), 6, 11, 2), standard_effects(), options);
+  REQUIRE_FALSE(found.effects.empty());
+  CHECK(found.effects[0].effect == "initial-gradient");
+  CHECK(found.effects[0].driver == "measured");
+}
+
 TEST_CASE("an unmodelled heat source is named with its power, and the gap shrinks to the noise on held-out batches") {
   const Diagnosis found = diagnosed(with({"heat-source", "column", "constant", {{"power_W", 100}, {"scale", 1}}}));
   REQUIRE(found.effects.size() == 1);

@@ -144,6 +144,15 @@ class EffectLibrary {
     for (const auto& effect : effects_) known += (known.empty() ? "" : ", ") + effect->name();
     throw Error("effect", "'" + name + "' is not known", known, "add it to the library or correct the name");
   }
+  /// Whether the effect can act at this place, from this driver.
+  bool accepts(const ThermalNetwork& network, const ThermalNetwork::AddedEffect& added) const {
+    try {
+      at(added.effect).parameters(network, added);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
   /// All candidates of all effects, in order.
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const {
     std::vector<ThermalNetwork::AddedEffect> result;

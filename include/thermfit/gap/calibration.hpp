@@ -21,8 +21,7 @@ struct Identified {
 /// Posterior standard deviations and correlations from the information of the data and the unit prior.
 inline std::vector<Identified> identified(const MapFit& fit) {
   const Index n = fit.t.size();
-  const Matrix information = fit.total().information + Matrix::Identity(n, n);
-  const Matrix covariance = information.llt().solve(Matrix::Identity(n, n));
+  const Matrix covariance = fit.covariance();
   std::vector<Identified> result(static_cast<std::size_t>(n));
   for (Index j = 0; j < n; ++j) {
     Identified& one = result[static_cast<std::size_t>(j)];

@@ -45,7 +45,7 @@ inline bool wanted(const std::string& effect, const DiagnoseOptions& options) {
 /// How far the parameters of the machine itself moved, largest first.
 inline std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
   const Index n = fit.t.size();
-  const Matrix covariance = (fit.total().information + Matrix::Identity(n, n)).llt().solve(Matrix::Identity(n, n));
+  const Matrix covariance = fit.covariance();
   std::vector<CalibrationMove> result;
   for (Index j = 0; j < n; ++j) {
     const Parameter& one = fit.parameter(j);
@@ -136,6 +136,7 @@ inline Diagnosed diagnose_fully(const ThermalNetwork& network, const Campaign& r
   diagnosis.batches = found.seen.names;
   diagnosis.verdict = judgement.verdict;
   diagnosis.effects = judgement.effects;
+  diagnosis.grounds = judgement.grounds;
   result.residuals.noise = noise_floor(found.seen, judgement.nearest->held.residual);
   diagnosis.gap = gap_of(found.seen, result.residuals, options.seed, !found.folds.empty());
   diagnosis.calibration = detail::calibration_moves(judgement.best->fit);

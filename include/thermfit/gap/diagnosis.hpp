@@ -160,6 +160,15 @@ struct CalibrationMove {
   bool pinned = true;    ///< the data, not the prior, decide it
 };
 
+/// What the verdict rests on: the account that comes nearest, named or not.
+struct Grounds {
+  std::size_t candidates = 0;  ///< effects at places that were tried
+  std::vector<Rival> nearest;  ///< effects of the account; empty where nothing was worth a closer look
+  double gain_nats = 0;        ///< of its evidence over calibration alone
+  double closes = 0;           ///< share of the squared gap beyond expectation, on held-out batches
+  double leaves = 0;           ///< squared gap beyond expectation, in units of what is expected
+};
+
 /// A fault of the data seen on the way: stuck sensor, gaps, an input that never changes.
 struct DataProblem {
   std::string place, what;
@@ -175,6 +184,7 @@ struct Diagnosis {
   Remaining remaining;
   NextExperiment next_experiment;
   std::vector<RuledOut> ruled_out;
+  Grounds grounds;
   std::vector<CalibrationMove> calibration;  ///< largest move first
   std::vector<DataProblem> data_problems;
   std::vector<std::string> weaker_claims;  ///< what these data do not allow to say, and why

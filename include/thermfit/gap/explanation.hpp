@@ -22,13 +22,18 @@ struct Explanation {
 
 /// Evidence counts by this power: lumping errors repeat from batch to batch, so its nats are not worth what they would
 /// be if the model were exact (a coarsened likelihood, Miller and Dunson 2019).
-constexpr double evidence_power = 0.1;
+constexpr double evidence_power = 0.15;
 
 /// Log probability of an account up to a constant: its evidence, and for every step off the listed places the number of
 /// nodes that the step could have taken.
 inline double plausibility(const Explanation& one) {
   return evidence_power * one.fit.log_evidence -
          one.steps * std::log(static_cast<double>(std::max<std::size_t>(2, one.fit.prior.nodes.size())));
+}
+
+/// What looking at many places costs the best of them: the log of how many there were.
+inline double price_of_search(std::size_t candidates) {
+  return std::log(static_cast<double>(std::max<std::size_t>(1, candidates)));
 }
 
 /// What stays the same while accounts of one campaign are compared.

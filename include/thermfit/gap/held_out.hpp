@@ -17,8 +17,10 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// batches leave nothing to judge by: no folds.
 inline Folds folds_of(const ThermalNetwork& network, const MachineRecord& seen, std::size_t most_folds = 12) {
   std::vector<std::size_t> judges;
+  const std::vector<LoneInput> lone = lone_inputs(network, seen);
   for (std::size_t b = 0; b < seen.batches(); ++b)
-    if (!drives_alone(network, seen, b)) judges.push_back(b);
+    if (std::none_of(lone.begin(), lone.end(), [&](const LoneInput& one) { return one.batch == b; }))
+      judges.push_back(b);
   if (judges.size() < 2) return {};
   Folds result(std::min(judges.size(), most_folds));
   for (std::size_t k = 0; k < judges.size(); ++k) result[k % result.size()].push_back(judges[k]);

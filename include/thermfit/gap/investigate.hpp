@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/gap/place_walk.hpp"
+#include "thermfit/gap/start_share.hpp"
 
 namespace thermfit {
 
@@ -18,7 +19,7 @@ struct SearchOptions {
   int most_steps = 3;         ///< from place to place around the best
   std::size_t most_effects = 2;
   unsigned threads = 0;    ///< 0: all cores
-  double far = 2;          ///< times what is expected: a channel beyond it asks for a second effect at once
+  double second_from = 4;  ///< misfit of a channel, (rms / expected)^2, beyond which a second effect is sought at once
   double tolerance = 1.5;  ///< nats at which a refit of a candidate stops
   int most_iterations = 14;
   std::function<void(const std::string& step, double share)> progress;
@@ -46,6 +47,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   Investigation result;
   result.machine = with_complete_effects(with_placements(network), library);
   result.seen = observations_of(result.machine, campaign);
+  result.machine.uncertainty.start_share = start_share_sd(result.machine, result.seen);
   result.folds = folds_of(result.machine, result.seen);
   const Inquiry inquiry{result.seen, result.machine, library, result.folds, options.threads};
   const auto say = [&](const std::string& step, double share) {
@@ -97,11 +99,11 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
 
   // A second effect on top of a first that is worth its name: what promises more than the number of candidates accounts
   // for, and anything where the first leaves some channel far from what can be expected.
-  const double by_chance = std::log(static_cast<double>(std::max<std::size_t>(1, candidates.size())));
+  const double by_chance = price_of_search(candidates.size());
   if (options.most_effects > 1 && !result.single.empty() &&
       plausibility(result.single[0]) - plausibility(result.calibrated) > by_chance) {
     const double left = misfit_of(result.seen, result.single[0].held.residual).maxCoeff();
-    const double least_gain = left > options.far * options.far ? 3 : by_chance / evidence_power;
+    const double least_gain = left > options.second_from ? 3 : by_chance / evidence_power;
     say("looking for a second effect", 0.7);
     const auto add_to = [&](const Explanation& first, std::size_t strongest) {
       const ScreeningBase base(result.seen, first.fit, library, result.machine.effects.size());

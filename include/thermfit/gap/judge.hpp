@@ -16,7 +16,7 @@ struct Judgement {
   std::vector<FoundEffect> effects;      ///< empty for none, miscalibration and unknown
   const Explanation* best = nullptr;     ///< the account behind `effects`; calibration alone where there are none
   const Explanation* nearest = nullptr;  ///< the best account tried, named or not
-  Closure closure;                       ///< of what calibration leaves, by `nearest`
+  Grounds grounds;                       ///< of `nearest`
 };
 
 namespace detail {
@@ -24,7 +24,7 @@ namespace detail {
 inline std::vector<Estimate> estimates(const Inquiry& inquiry, const Explanation& account, std::size_t position) {
   const MapFit& fit = account.fit;
   const Index n = fit.t.size();
-  const Matrix covariance = (fit.total().information + Matrix::Identity(n, n)).llt().solve(Matrix::Identity(n, n));
+  const Matrix covariance = fit.covariance();
   const std::size_t own = inquiry.machine.effects.size() + position;
   const ThermalNetwork fitted = fit.network();
   const ThermalNetwork::AddedEffect& added = fitted.effects[own];
@@ -41,6 +41,27 @@ inline std::vector<Estimate> estimates(const Inquiry& inquiry, const Explanation
     }
     result.push_back(std::move(one));
   }
+  return result;
+}
+
+inline Grounds grounds_of(const Investigation& found, const Explanation& nearest) {
+  Grounds result;
+  result.candidates = found.screened.size();
+  result.gain_nats = nearest.fit.log_evidence - found.calibrated.fit.log_evidence;
+  for (const ThermalNetwork::AddedEffect& one : nearest.effects)
+    result.nearest.push_back({one.effect, one.location, one.driver, 0});
+  const Closure closure = closure_of(found.seen, found.calibrated.held, nearest.held);
+  result.closes = closure.share;
+  result.leaves = closure.left;
+  return result;
+}
+
+/// Plausibility of the best account with this effect alone, wherever it acts.
+inline double alone(const std::vector<Explanation>& single, const ThermalNetwork::AddedEffect& effect) {
+  double result = -INFINITY;
+  for (const Explanation& one : single)
+    if (one.effects[0].effect == effect.effect && one.effects[0].driver == effect.driver)
+      result = std::max(result, plausibility(one));
   return result;
 }
 
@@ -76,7 +97,7 @@ struct OffsetFault {
 inline OffsetFault offset_fault(const Inquiry& inquiry, const MapFit& fit) {
   OffsetFault result;
   const Index n = fit.t.size();
-  const Matrix covariance = (fit.total().information + Matrix::Identity(n, n)).llt().solve(Matrix::Identity(n, n));
+  const Matrix covariance = fit.covariance();
   for (Index j = 0; j < n; ++j) {
     const Parameter& one = fit.parameter(j);
     if (one.kind != Parameter::Kind::sensor_offset || !(covariance(j, j) < 1)) continue;
@@ -98,8 +119,7 @@ inline bool name_offset(const Inquiry& inquiry, const Investigation& found, Judg
   const auto account = std::find_if(found.single.begin(), found.single.end(), [&](const Explanation& one) {
     return one.effects[0].effect == "sensor-offset" && one.effects[0].location == column;
   });
-  const double odds =
-      fault.odds - std::log(static_cast<double>(found.seen.channels.size() * inquiry.library.all().size()));
+  const double odds = fault.odds - price_of_search(found.seen.channels.size() * inquiry.library.all().size());
   if (odds < 0 || account == found.single.end()) return false;
   FoundEffect one;
   one.effect = "sensor-offset";
@@ -119,15 +139,17 @@ inline bool name_offset(const Inquiry& inquiry, const Investigation& found, Judg
 /// A gap is real when some channel leaves on held-out batches far more than a right machine would, or when an effect
 /// explains what calibration only absorbs so much better that the number of candidates tried does not account for it.
 /// It is explained when the best account closes most of it on batches it has not seen; accounts share the probability
-/// by their evidence. A second effect is named only when it closes most of what the first leaves.
+/// by their evidence. A second effect is named only when it closes most of what the first leaves,
+/// and gains more than the search and the form of the first one's law account for.
 inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const JudgingOptions& options = {}) {
   Judgement result;
   result.best = result.nearest = &found.calibrated;
-  const bool real = misfit_of(found.seen, found.calibrated.held.residual).maxCoeff() > options.far;
-  const double odds = found.single.empty()
-                          ? -INFINITY
-                          : plausibility(found.single[0]) - plausibility(found.calibrated) -
-                                std::log(static_cast<double>(std::max<std::size_t>(1, found.screened.size())));
+  result.grounds.candidates = found.screened.size();
+  if (!found.single.empty()) result.grounds = detail::grounds_of(found, found.single.front());
+  const bool real = misfit_of(found.seen, found.calibrated.held.residual).maxCoeff() > options.real_from;
+  const double odds = found.single.empty() ? -INFINITY
+                                           : plausibility(found.single[0]) - plausibility(found.calibrated) -
+                                                 price_of_search(found.screened.size());
   if (!real && odds < 0) {
     if (detail::name_offset(inquiry, found, result)) return result;
     const double placed = excess_of(
@@ -139,16 +161,17 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
 
   const Explanation& single = found.single.front();
   bool two = false;
+  double gained = 0;
   if (!found.several.empty()) {
     const Explanation& pair = found.several.front();
-    const double gained =
-        plausibility(pair) - plausibility(single) - std::log(static_cast<double>(found.screened.size()));
+    gained = plausibility(pair) - plausibility(single) - price_of_search(found.screened.size()) -
+             options.law_tolerance * (plausibility(single) - plausibility(found.calibrated));
     two = gained > 0 && closure_of(found.seen, single.held, pair.held).share > options.second_closes;
   }
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
   result.nearest = &accounts.front();
-  result.closure = closure_of(found.seen, found.calibrated.held, accounts.front().held);
-  const double known = probability_known(result.closure, options) * logistic(odds);
+  result.grounds = detail::grounds_of(found, accounts.front());
+  const double known = probability_known(result.grounds.closes, result.grounds.leaves, options) * logistic(odds);
   const std::vector<double> weight = probabilities(accounts);
   if (known < 0.5) return result;
 
@@ -163,8 +186,9 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
     one.parameters = detail::estimates(inquiry, accounts.front(), 0);
     result.effects = {std::move(one)};
   } else {
-    // Each of the pair with what could take its part beside the other.
-    for (const auto& other : {leading[1], leading[0]}) {
+    // Each of the pair with what could take its part beside the other; first the one that explains more alone.
+    const bool as_listed = detail::alone(found.single, leading[0]) >= detail::alone(found.single, leading[1]);
+    for (const auto& other : {leading[as_listed], leading[!as_listed]}) {
       std::vector<double> share(accounts.size(), 0.0);
       for (std::size_t i = 0; i < accounts.size(); ++i)
         for (const auto& one : accounts[i].effects)
@@ -172,8 +196,9 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
       double sum = 0;
       for (const double one : share) sum += one;
       for (double& one : share) one /= sum;
+      const double both = result.effects.empty() ? 1 : logistic(gained);
       result.effects.push_back(detail::found_effect(
-          inquiry, accounts, marginals(accounts, share, other.effect, options.listed), known, options));
+          inquiry, accounts, marginals(accounts, share, other.effect, options.listed), known * both, options));
     }
   }
   result.best = &accounts.front();

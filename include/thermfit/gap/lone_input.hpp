@@ -39,9 +39,4 @@ inline std::vector<LoneInput> lone_inputs(const ThermalNetwork& network, const M
   return result;
 }
 
-inline bool drives_alone(const ThermalNetwork& network, const MachineRecord& seen, std::size_t batch) {
-  const std::vector<LoneInput> lone = lone_inputs(network, seen);
-  return std::any_of(lone.begin(), lone.end(), [&](const LoneInput& one) { return one.batch == batch; });
-}
-
 }  // namespace thermfit

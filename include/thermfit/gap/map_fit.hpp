@@ -52,6 +52,11 @@ struct MapFit {
     }
     return result;
   }
+  /// Of the working coordinates, after the data: (J'R^-1 J + I)^-1.
+  Matrix covariance() const {
+    const Matrix identity = Matrix::Identity(t.size(), t.size());
+    return (total().information + identity).llt().solve(identity);
+  }
 };
 
 struct MapFitOptions {

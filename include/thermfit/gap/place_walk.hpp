@@ -61,7 +61,7 @@ class PlaceWalk {
     const bool takes_sets = std::any_of(screened_.begin(), screened_.end(), [&](const Screened& one) {
       return one.added.effect == moving().effect && one.added.location.find('+') != std::string::npos;
     });
-    return (set && takes_sets) || listed(place);
+    return (set && takes_sets && inquiry_.library.accepts(inquiry_.machine, at(place).added)) || listed(place);
   }
   bool tried(const std::string& place) const {
     ThermalNetwork::AddedEffect moved = moving();

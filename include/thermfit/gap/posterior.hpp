@@ -12,12 +12,13 @@ namespace thermfit {
 /// The few numbers between what was measured and probabilities: fitted by logistic regression on generated campaigns
 /// and the withheld cases, and checked by leaving each case out (tests/blind/README.md).
 struct JudgingOptions {
-  double far = 5;              ///< misfit of a channel, (rms / expected)^2, beyond which a gap is real
-  double least_excess = 1;     ///< below it, summed over channels, sensors only had to be placed
-  double known_by_share = 3;   ///< log odds that the cause is known: this times the share that it closes …
-  double known_by_left = 1.6;  ///< … less this times log(1 + what it leaves)
-  double second_closes = 0.5;  ///< share of what one effect leaves that a second must close to be named
-  double listed = 0.05;        ///< rivals above this probability are listed
+  double real_from = 9;         ///< misfit of a channel, (rms / expected)^2, beyond which a gap is real
+  double least_excess = 1;      ///< below it, summed over channels, sensors only had to be placed
+  double known_by_share = 2.7;  ///< log odds that the cause is known: this times the share that it closes …
+  double known_by_left = 1.2;   ///< … less this times log(1 + what it leaves)
+  double second_closes = 0.5;   ///< share of what one effect leaves that a second must close to be named
+  double law_tolerance = 0.05;  ///< share of its evidence that the form of a law may be short of, no second effect
+  double listed = 0.05;         ///< rivals above this probability are listed
 };
 
 inline double logistic(double odds) { return 1 / (1 + std::exp(-odds)); }
@@ -57,8 +58,8 @@ inline Closure closure_of(const MachineRecord& seen, const HeldOut& before, cons
 }
 
 /// Probability that what was found is the cause rather than the nearest thing in the catalogue to an unknown one.
-inline double probability_known(const Closure& closure, const JudgingOptions& options) {
-  return logistic(options.known_by_share * closure.share - options.known_by_left * std::log1p(closure.left));
+inline double probability_known(double closes, double leaves, const JudgingOptions& options) {
+  return logistic(options.known_by_share * closes - options.known_by_left * std::log1p(leaves));
 }
 
 /// One effect of an account with its rivals: the accounts marginalised over everything but the effect in question.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thermfit/gap/diagnosis.hpp"
+#include "thermfit/model/quantiles.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
@@ -34,8 +35,8 @@ inline double shrink_of_explainable_percent(double calibrated, double with_effec
 }
 
 /// Interval of the shrink from drawing whole batches with replacement: samples of a batch are not independent, batches
-/// nearly are. Percentiles of `draws` resamples, pushed outwards by sqrt(n / (n - 1)) since the resamples of n batches
-/// scatter that much too little.
+/// nearly are. Expanded percentiles of `draws` resamples (Hesterberg 2015): the resamples of n batches scatter by
+/// sqrt((n - 1) / n) too little, and what scatter n batches show is itself uncertain as Student's t says.
 inline Interval shrink_interval(const BatchSquares& calibrated, const BatchSquares& with_effect, double coverage,
                                 std::uint64_t seed, int draws = 2000) {
   const Index n = calibrated.sum.size();
@@ -54,12 +55,13 @@ inline Interval shrink_interval(const BatchSquares& calibrated, const BatchSquar
   }
   if (shrinks.empty()) return {0, 0};
   std::sort(shrinks.begin(), shrinks.end());
-  const double wider = std::sqrt(static_cast<double>(n) / static_cast<double>(n - 1));
+  const double tail = (1 - coverage) / 2, degrees = static_cast<double>(n - 1);
+  const double wider = std::sqrt((degrees + 1) / degrees) * t_quantile(tail, degrees) / normal_quantile(tail);
   const auto at = [&](double share) {
     const double value = shrinks[static_cast<std::size_t>(share * static_cast<double>(shrinks.size() - 1))];
     return std::min(100.0, middle + wider * (value - middle));
   };
-  return {at((1 - coverage) / 2), at((1 + coverage) / 2)};
+  return {at(tail), at(1 - tail)};
 }
 
 }  // namespace thermfit

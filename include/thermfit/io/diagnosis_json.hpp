@@ -40,9 +40,16 @@ inline void add_stages(OrderedJson& object, const StagedGap& rms) {
   object["noise"] = figure(rms.noise);
 }
 
+/// Effect, place and driver of a found effect or a rival.
+template <class Named>
+OrderedJson named_json(const Named& one) {
+  OrderedJson object{{"effect", one.effect}, {"location", one.location}};
+  if (!one.driver.empty()) object["driver"] = one.driver;
+  return object;
+}
+
 inline OrderedJson effect_json(const FoundEffect& found) {
-  OrderedJson object{{"effect", found.effect}, {"location", found.location}};
-  if (!found.driver.empty()) object["driver"] = found.driver;
+  OrderedJson object = named_json(found);
   object["confidence"] = figure(found.confidence);
   OrderedJson& parameters = object["parameters"] = OrderedJson::object();
   for (const Estimate& estimate : found.parameters)
@@ -51,8 +58,7 @@ inline OrderedJson effect_json(const FoundEffect& found) {
         {"unit", estimate.unit},
         {"standard_error", estimate.standard_error < 0 ? OrderedJson(nullptr) : figure(estimate.standard_error)}};
   object["alternatives"] = array_of(found.alternatives, [](const Rival& rival) {
-    OrderedJson one{{"effect", rival.effect}, {"location", rival.location}};
-    if (!rival.driver.empty()) one["driver"] = rival.driver;
+    OrderedJson one = named_json(rival);
     one["confidence"] = figure(rival.confidence);
     return one;
   });
@@ -153,6 +159,12 @@ inline nlohmann::ordered_json diagnosis_to_json(const Diagnosis& diagnosis) {
   document["ruled_out"] = detail::array_of(diagnosis.ruled_out, [](const RuledOut& one) {
     return OrderedJson{{"effect", one.effect}, {"location", one.location}, {"reason", one.reason}};
   });
+  const Grounds& grounds = diagnosis.grounds;
+  document["grounds"] = {{"candidates", grounds.candidates},
+                         {"nearest", detail::array_of(grounds.nearest, detail::named_json<Rival>)},
+                         {"gain_nats", detail::figure(grounds.gain_nats)},
+                         {"closes", detail::figure(grounds.closes)},
+                         {"leaves", detail::figure(grounds.leaves)}};
   document["calibration"] = detail::array_of(diagnosis.calibration, [](const CalibrationMove& one) {
     return OrderedJson{{"parameter", one.parameter},
                        {"unit", one.unit},
