@@ -7,7 +7,7 @@ using namespace blind;
 
 namespace {
 
-const TrueEffect coolant{{"coolant"}, {"head_front", "head_tip"}, true};
+const TrueEffect coolant{{"coolant"}, {"head_front", "head_tip"}};
 
 Truth one_effect() {
   Truth truth;
@@ -58,7 +58,7 @@ TEST_CASE("an effect listed under the verdict unknown is not named") {
 
 TEST_CASE("of a pair both must be found") {
   Truth truth = one_effect();
-  truth.effects.push_back({{"speed-shift"}, {"displacement"}, true});
+  truth.effects.push_back({{"speed-shift"}, {"displacement"}});
   const std::string first = R"({"effect": "coolant", "location": "head_front", "confidence": 0.9})";
   const std::string second = R"({"effect": "speed-shift", "location": "displacement", "confidence": 0.9})";
   CHECK_FALSE(mark(truth, report("effect", "[" + first + "]")).top);

@@ -18,6 +18,24 @@ ThermalNetwork with(ThermalNetwork::AddedEffect effect) {
   return plant;
 }
 
+/// Heat into the spindle and the head together, and nowhere else.
+class HeatIntoBoth : public Effect {
+ public:
+  std::string name() const override { return "heat-into-both"; }
+  Stage stage() const override { return Stage::heat; }
+  std::vector<ThermalNetwork::AddedEffect> candidates(const Setting&) const override {
+    return {{name(), "spindle+head", "constant", {{"power_W", 0}}}};
+  }
+  std::vector<EffectParameter> parameters(const ThermalNetwork&,
+                                          const ThermalNetwork::AddedEffect& added) const override {
+    if (added.location != "spindle+head") throw Error("location", added.location, "spindle+head");
+    return {positive_parameter("power_W", "W", 50)};
+  }
+  void act(ThermalSystem& system, const ThermalNetwork&, const ThermalNetwork::AddedEffect&) const override {
+    system.heat({{0, 0.5}, {1, 0.5}}, [](const Moment&, const double* p) { return p[0]; });
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a machine that the simulator matches has no gap to explain") {
@@ -89,6 +107,17 @@ TEST_CASE("an effect that is left out of the catalogue is not named") {
   const ThermalNetwork plant = with({"speed-shift", "displacement", "spindle_rpm", {{"shift_um", 6}, {"scale", 4000}}});
   CHECK(diagnosed(plant).effects.at(0).effect == "speed-shift");
   for (const FoundEffect& one : diagnosed(plant, 6, options).effects) CHECK(one.effect != "speed-shift");
+}
+
+TEST_CASE("the search for the place leaves out places that an effect refuses") {
+  EffectLibrary own;
+  own.add(std::make_shared<HeatIntoBoth>());
+  ThermalNetwork plant = bench::machine();
+  plant.effects = {{"heat-into-both", "spindle+head", "constant", {{"power_W", 80}}}};
+  const Campaign real = bench::campaign(plant, 5, 11, 0, own);
+  const Diagnosis found = diagnose(bench::machine(), real, own);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].location == "spindle+head");
 }
 
 TEST_CASE("one batch gives figures of the fit itself and says so") {

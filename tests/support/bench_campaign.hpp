@@ -69,10 +69,10 @@ inline ThermalNetwork machine() {
 /// Batches of four hours, a sample every three minutes, with changing speed and room, measured on `plant` with noise of
 /// .03 K and .25 um. Every part starts off the room by its own draw, a batch at a time, of the standard deviation
 /// given.
-inline Campaign campaign(const ThermalNetwork& plant, std::size_t batches, unsigned seed, double uneven_start_K = 0) {
+inline Campaign campaign(const ThermalNetwork& plant, std::size_t batches, unsigned seed, double uneven_start_K = 0,
+                         const EffectLibrary& library = standard_effects()) {
   std::mt19937 random(seed), starts(seed + 1);
   std::normal_distribution<double> normal, off;
-  const EffectLibrary library = standard_effects();
   const Index rows = 81;
   Campaign result;
   for (std::size_t b = 0; b < batches; ++b) {

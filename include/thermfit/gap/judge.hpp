@@ -65,6 +65,16 @@ inline double alone(const std::vector<Explanation>& single, const ThermalNetwork
   return result;
 }
 
+/// Probability that the best account of two is right about its second effect: it must gain more than the search and the
+/// form of the first one's law account for, and close what the first leaves as the first is asked to close the gap.
+inline double probability_of_second(const Investigation& found, const JudgingOptions& options) {
+  const Explanation &single = found.single.front(), &pair = found.several.front();
+  const double gained = plausibility(pair) - plausibility(single) - price_of_search(found.screened.size()) -
+                        options.law_tolerance * (plausibility(single) - plausibility(found.calibrated));
+  const Closure closure = closure_of(found.seen, single.held, pair.held);
+  return logistic(gained) * probability_known(closure.share, closure.left, options);
+}
+
 /// Entry for effect `position` of the best account, with rivals that could take its part.
 inline FoundEffect found_effect(const Inquiry& inquiry, const std::vector<Explanation>& accounts,
                                 const std::vector<Marginal>& ranked, double known, const JudgingOptions& options) {
@@ -139,8 +149,7 @@ inline bool name_offset(const Inquiry& inquiry, const Investigation& found, Judg
 /// A gap is real when some channel leaves on held-out batches far more than a right machine would, or when an effect
 /// explains what calibration only absorbs so much better that the number of candidates tried does not account for it.
 /// It is explained when the best account closes most of it on batches it has not seen; accounts share the probability
-/// by their evidence. A second effect is named only when it closes most of what the first leaves,
-/// and gains more than the search and the form of the first one's law account for.
+/// by their evidence. A second effect is named only when it is more probable than not.
 inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const JudgingOptions& options = {}) {
   Judgement result;
   result.best = result.nearest = &found.calibrated;
@@ -160,14 +169,8 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   if (found.single.empty()) return result;
 
   const Explanation& single = found.single.front();
-  bool two = false;
-  double gained = 0;
-  if (!found.several.empty()) {
-    const Explanation& pair = found.several.front();
-    gained = plausibility(pair) - plausibility(single) - price_of_search(found.screened.size()) -
-             options.law_tolerance * (plausibility(single) - plausibility(found.calibrated));
-    two = gained > 0 && closure_of(found.seen, single.held, pair.held).share > options.second_closes;
-  }
+  const double second = found.several.empty() ? 0 : detail::probability_of_second(found, options);
+  const bool two = second > 0.5;
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
   result.nearest = &accounts.front();
   result.grounds = detail::grounds_of(found, accounts.front());
@@ -196,9 +199,9 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
       double sum = 0;
       for (const double one : share) sum += one;
       for (double& one : share) one /= sum;
-      const double both = result.effects.empty() ? 1 : logistic(gained);
+      const double own = result.effects.empty() ? 1 : second;
       result.effects.push_back(detail::found_effect(
-          inquiry, accounts, marginals(accounts, share, other.effect, options.listed), known * both, options));
+          inquiry, accounts, marginals(accounts, share, other.effect, options.listed), known * own, options));
     }
   }
   result.best = &accounts.front();
