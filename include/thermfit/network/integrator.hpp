@@ -99,7 +99,8 @@ class Integrator {
     rate_bound_ = state_flow_rate();
   }
 
-  /// Moves every node with sensors towards what they read first.
+  /// Moves every node with sensors towards what they read first, offsets and all: were the offsets taken off, they
+  /// could move the starts at will.
   void start_by_readings() {
     const Excitation& excitation = drive_.excitation();
     const auto& [share, own_column, node_of_sensor] = system_.start_by_readings;
@@ -114,12 +115,9 @@ class Integrator {
     for (Index s = 0; s < sensors; ++s) {
       const Index node = node_read_by(s);
       if (node < 0) continue;
-      const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
-      const double part = 1 / sensors_at(node);
-      const double rise = first_degC(s) - sensor.offset_K - excitation.ambient_degC(0);
-      temperatures_(node) += share * part * rise;
-      if (sensor.column >= 0) tangents_(node, state_column(sensor.column)) -= share * part;
-      if (own_column >= 0) tangents_(node, state_column(own_column)) += part * rise;
+      const double rise = (first_degC(s) - excitation.ambient_degC(0)) / sensors_at(node);
+      temperatures_(node) += share * rise;
+      if (own_column >= 0) tangents_(node, state_column(own_column)) += rise;
     }
   }
 

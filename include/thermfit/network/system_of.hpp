@@ -47,8 +47,7 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
   system.own_nodes = network.node_count();
   system.reference_degC = network.reference_degC;
   system.columns = static_cast<Index>(parameters.size());
-  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured ||
-                                  network.initial.share != 0 || column(Kind::start, 0) >= 0;
+  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Kind kind = parameters[j].kind;
     if (kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&

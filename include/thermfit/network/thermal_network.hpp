@@ -67,8 +67,8 @@ struct ThermalNetwork {
     };
     Rule rule = Rule::ambient;
     std::vector<std::pair<Index, double>> degC;
-    /// Under Rule::ambient: nodes with sensors start by this share of their first rise above ambient (sensors less
-    /// offset) off it. 1 is Rule::measured.
+    /// Under Rule::ambient: nodes with sensors start off it by this share of what these read above it first. 1 is
+    /// Rule::measured where sensors have no offset.
     double share = 0;
   };
   /// Prior standard deviations of the calibration: relative, except for the sensor offset.
