@@ -217,7 +217,8 @@ TEST_CASE("a fault planted into a thermometer of a measured lathe is named at th
 }
 
 TEST_CASE(
-    "a fault of half a kelvin or two minutes drowns in what the lathe's simulator lacks: no other is named for it") {
+    "a fault of half a kelvin or two minutes drowns in what the lathe's simulator lacks, and no other is named for "
+    "it") {
   REQUIRE_SHARED_DATA(data);
   const Lathe lathe(data + "/real/ace_lathe");
   for (const Index column : {1, 2, 3, 4, 5})

@@ -112,10 +112,11 @@ struct NormalEquations {
 
 inline NormalEquations normal_equations(const Linearized::Block& block) {
   NormalEquations result(block.jacobian.cols());
+  result.squares = block.residual.squaredNorm();
+  if (block.jacobian.cols() == 0) return result;
   result.information.template selfadjointView<Eigen::Lower>().rankUpdate(block.jacobian.transpose());
   result.information.template triangularView<Eigen::StrictlyUpper>() = result.information.transpose();
   result.score.noalias() = block.jacobian.transpose() * block.residual;
-  result.squares = block.residual.squaredNorm();
   return result;
 }
 
