@@ -102,7 +102,7 @@ std::string without_role(const std::vector<CheckedBatch>& checked) {
   std::string text;
   for (const auto& [batch, found] : checked) {
     std::string lacks;
-    if (!batch.has_time()) lacks = "no clock (--time-column NAME)";
+    if (!batch.has_time() && batch.inputs.count() > 0) lacks = "no clock (--time-column NAME)";
     if (batch.errors.count() == 0)
       lacks += (lacks.empty() ? "" : ", ") + std::string("no thermal error (--errors NAMES)");
     if (lacks.empty()) continue;
