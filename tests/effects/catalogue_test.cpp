@@ -67,7 +67,7 @@ TEST_CASE("sensitivities with any effect at any place agree with central differe
     const Vector values = values_of(network, parameters);
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       const Index column = static_cast<Index>(j);
-      const double step = 1e-5 * (parameters[j].logarithmic ? values(column) : parameters[j].sd);
+      const double step = 3e-5 * (parameters[j].logarithmic ? values(column) : parameters[j].sd);
       Vector above = values, below = values;
       above(column) += step;
       below(column) -= step;

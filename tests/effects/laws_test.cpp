@@ -199,6 +199,48 @@ TEST_CASE("displacement laws: missing and nonlinear expansion, speed shift, prob
   CHECK(run(lump({"probe-drift", "displacement", "time", {{"rate_um_per_h", 1.2}}}))(12, 1) == Approx(1.2));
 }
 
+namespace {
+
+/// The lump in a room that warms by `K_per_h` from 20 degC, as the column Troom shows.
+ThermalNetwork lump_in_measured_room(ThermalNetwork::AddedEffect added) {
+  ThermalNetwork network = lump(std::move(added));
+  network.ambient = {ThermalNetwork::Ambient::Rule::column, "Troom", 20};
+  network.sensors.resize(2);
+  network.sensors[1].column = "Troom";
+  network.sensors[1].node = ThermalNetwork::ambient_node;
+  return network;
+}
+
+Batch warming(double K_per_h) {
+  Batch batch = hour();
+  batch.temperatures.names = {"Troom"};
+  batch.temperatures.values = 20 + batch.time_s.array() * (K_per_h / 3600);
+  return batch;
+}
+
+}  // namespace
+
+TEST_CASE("a probe drifts with the room as its fixture feels it: the exact lagged ramp", "[effects]") {
+  const double lag_s = GENERATE(0., 600.);
+  const ThermalNetwork network =
+      lump_in_measured_room({"probe-drift", "displacement", "ambient", {{"um_per_K", 2}, {"lag_s", lag_s}}});
+  ThermalNetwork still = network;
+  still.effects.clear();
+  const Vector drift = (run(network, warming(6)) - run(still, warming(6))).rightCols(1);
+  for (Index i = 0; i < 13; ++i) {
+    const double t = 300 * static_cast<double>(i), lag = 1 + lag_s;
+    CHECK(drift(i) == Approx(2 * 6. / 3600 * (t - lag * (1 - std::exp(-t / lag)))).margin(1e-9));
+  }
+}
+
+TEST_CASE("walls that never follow the room hold a radiating part where it started", "[effects]") {
+  ThermalNetwork network = lump_in_measured_room({"radiation", "lump", "", {{"share", 1e4}, {"lag_s", 1e9}}});
+  network.nodes[0].capacity_J_per_K = 1e5;
+  CHECK(run(network, warming(6))(12, 0) == Approx(20).margin(0.002));
+  network.effects[0].parameters[1].second = 0;
+  CHECK(run(network, warming(6))(12, 0) == Approx(26).margin(0.05));
+}
+
 TEST_CASE("a hidden mass keeps the heat of the whole", "[effects]") {
   ThermalNetwork network =
       hot(lump({"thermal-memory", "lump", "", {{"capacity_J_per_K", 5000}, {"conductance_W_per_K", 4}}}), 20);

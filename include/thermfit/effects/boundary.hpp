@@ -125,8 +125,9 @@ class NaturalConvection : public Effect {
   }
 };
 
-/// Radiation to walls at ambient: + k_i (theta_amb^4 - theta^4) in kelvin, with k_i = share H_i / (4 (293.15 K)^3): the
-/// parameter is what radiation adds to the ambient conductance of each node at 20 degC, relative to it.
+/// Radiation to walls that follow ambient with a lag: + k_i (theta_wall^4 - theta^4) in kelvin, with k_i = share H_i /
+/// (4 (293.15 K)^3): the share is what radiation adds to the ambient conductance of each node at 20 degC, relative to
+/// it.
 class Radiation : public Effect {
  public:
   std::string name() const override { return "radiation"; }
@@ -134,20 +135,22 @@ class Radiation : public Effect {
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : spread_places(setting.network))
-      result.push_back({name(), place, "", {{"share", 0}}});
+      result.push_back({name(), place, "", {{"share", 0}, {"lag_s", 0}}});
     return result;
   }
   std::vector<EffectParameter> parameters(const ThermalNetwork& network,
                                           const ThermalNetwork::AddedEffect& added) const override {
     nodes_at(network, added.location);
-    return {positive_parameter("share", "", 0.5)};
+    return {positive_parameter("share", "", 0.5), room_lag_parameter(3600, {1800})};
   }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
     for (const Index node : nodes_at(network, added.location))
-      system.scale_conductance_by_state(system.ambient_element(node), [node](const Moment& now, const double* p) {
-        const double wall = now.temperature_degC[node] + 273.15, air = now.ambient_degC + 273.15;
-        return p[0] * (wall * wall + air * air) * (wall + air) / (4 * 293.15 * 293.15 * 293.15);
+      system.drive_conductance(system.ambient_element(node), {node}, [node](const Moment& now, const double* p) {
+        const double felt_K = now.ambient->felt_rise(at_least_a_second(p[1]), now.time_s);
+        const double wall = now.first_ambient_degC + felt_K + 273.15;
+        const double part = now.temperature_degC[node] + 273.15;
+        return p[0] * (wall - part) * (wall + part) * (wall * wall + part * part) / (4 * 293.15 * 293.15 * 293.15);
       });
   }
 };

@@ -71,6 +71,16 @@ inline EffectParameter shape_parameter(std::string name, std::string unit, doubl
   return one;
 }
 
+/// How late (s) something follows the room: 0, the usual assumption, is most probable.
+inline EffectParameter room_lag_parameter(double sd, std::vector<double> starts) {
+  EffectParameter one = shape_parameter("lag_s", "s", 0, sd, 0, std::numeric_limits<double>::infinity());
+  one.starts = std::move(starts);
+  return one;
+}
+
+/// Of a fitted lag (s): a lag of nothing is not a number that can be varied.
+inline double at_least_a_second(double lag_s) { return 1 + lag_s; }
+
 /// A scale that is chosen and not fitted.
 inline EffectParameter fixed_parameter(std::string name, double value) {
   EffectParameter one = linear_parameter(std::move(name), "", 1);

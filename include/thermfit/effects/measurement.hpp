@@ -104,7 +104,8 @@ class SensorLag : public SensorEffect {
   }
 };
 
-/// The displacement probe drifts: + b t (driver `time`), or follows the room at once: + k (amb - amb_0) (`ambient`).
+/// The displacement probe drifts: + b t (driver `time`), or with the room: + k (amb - amb_0), as its fixture feels it
+/// through a first-order lag (`ambient`).
 class ProbeDrift : public Effect {
  public:
   std::string name() const override { return "probe-drift"; }
@@ -114,7 +115,7 @@ class ProbeDrift : public Effect {
     const bool room = setting.ambient_varies || setting.network.ambient.rule == ThermalNetwork::Ambient::Rule::column;
     for (const std::string& place : displacement_places(setting.network)) {
       result.push_back({name(), place, "time", {{"rate_um_per_h", 0}}});
-      if (room) result.push_back({name(), place, "ambient", {{"um_per_K", 0}}});
+      if (room) result.push_back({name(), place, "ambient", {{"um_per_K", 0}, {"lag_s", 0}}});
     }
     return result;
   }
@@ -122,15 +123,20 @@ class ProbeDrift : public Effect {
                                           const ThermalNetwork::AddedEffect& added) const override {
     displacements_at(network, added.location);
     if (added.driver == "time") return {linear_parameter("rate_um_per_h", "um/h", 2)};
-    if (added.driver == "ambient") return {linear_parameter("um_per_K", "um/K", 2)};
+    if (added.driver == "ambient") return {linear_parameter("um_per_K", "um/K", 2), room_lag_parameter(600, {0, 600})};
     throw Error("driver", "'" + added.driver + "'", "time, ambient");
   }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
-    const bool with_time = added.driver == "time";
-    for (const Index output : displacements_at(network, added.location))
-      system.displacement(output, {}, [with_time](const Moment& now, const double* p) {
-        return p[0] * (with_time ? now.time_s / 3600 : now.measured_ambient_degC - now.first_measured_ambient_degC);
+    const std::vector<Index> outputs = displacements_at(network, added.location);
+    if (added.driver == "time") {
+      for (const Index output : outputs)
+        system.displacement(output, {}, [](const Moment& now, const double* p) { return p[0] * now.time_s / 3600; });
+      return;
+    }
+    for (const Index output : outputs)
+      system.displacement(output, {}, [](const Moment& now, const double* p) {
+        return p[0] * now.measured_ambient->felt_rise(at_least_a_second(p[1]), now.time_s);
       });
   }
 };

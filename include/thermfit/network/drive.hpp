@@ -28,7 +28,13 @@ class Drive {
     }
     ambient_ = excitation.ambient_degC;
     if (!system.ambient_laws.empty()) apply_ambient_laws();
+    history_ = {excitation.time_s, ambient_};
+    const Vector& measured = excitation.measured_ambient_degC;
+    measured_history_ = {excitation.time_s, measured.size() > 0 ? measured : ambient_};
   }
+
+  Drive(const Drive&) = delete;  // the histories point into it
+  Drive& operator=(const Drive&) = delete;
 
   Index samples() const { return ambient_.size(); }
   const Excitation& excitation() const { return excitation_; }
@@ -60,6 +66,8 @@ class Drive {
     const Vector& measured = excitation_.measured_ambient_degC;
     now.measured_ambient_degC = measured.size() > 0 ? between(measured, sample, time_s) : now.ambient_degC;
     now.first_measured_ambient_degC = measured.size() > 0 ? measured(0) : now.first_ambient_degC;
+    now.ambient = &history_;
+    now.measured_ambient = &measured_history_;
     const Vector& readings = excitation_.first_reading_degC;
     now.first_reading_degC = readings.size() > 0 ? readings.data() : nullptr;
     now.inputs = inputs_.row(sample).data();
@@ -116,6 +124,7 @@ class Drive {
   RowMatrix inputs_;
   Vector ambient_;
   Matrix ambient_tangents_;  ///< samples x parameters
+  RoomHistory history_, measured_history_;
 };
 
 }  // namespace thermfit::detail

@@ -165,12 +165,10 @@ class Integrator {
 
   double flow_W(const ThermalSystem::StateFlow& flow, Index sample, double time_s, const Vector& degC) const {
     const Moment now = drive_.moment(sample, time_s, degC.data());
-    double value = system_.value(flow.law, now);
-    if (flow.element >= 0) {
-      const ThermalSystem::Conductance& one = system_.conductances[static_cast<std::size_t>(flow.element)];
-      value *= one.W_per_K * ((one.b >= 0 ? degC(one.b) : now.ambient_degC) - degC(one.a));
-    }
-    return value;
+    return base_W_per_K(flow) * system_.value(flow.law, now);
+  }
+  double base_W_per_K(const ThermalSystem::StateFlow& flow) const {
+    return flow.element < 0 ? 1 : system_.conductances[static_cast<std::size_t>(flow.element)].W_per_K;
   }
 
   /// Modal force of all state-dependent heat at `degC`, and its tangents where `slopes` is given.
@@ -208,14 +206,10 @@ class Integrator {
       tangent += slope * node_tangents_.row(node);
     }
     const Moment now = drive_.moment(sample, time_s, degC.data());
-    double factor = 1;
+    const double factor = base_W_per_K(flow);
     if (flow.element >= 0) {
-      const ThermalSystem::Conductance& one = system_.conductances[static_cast<std::size_t>(flow.element)];
-      const double difference = (one.b >= 0 ? degC(one.b) : now.ambient_degC) - degC(one.a);
-      factor = one.W_per_K * difference;
-      if (one.column >= 0) tangent(state_column(one.column)) += difference * system_.value(flow.law, now);
-      if (one.b == ThermalSystem::ambient && drive_.ambient_moves())
-        tangent += one.W_per_K * system_.value(flow.law, now) * ambient_tangent(sample, time_s);
+      const Column column = system_.conductances[static_cast<std::size_t>(flow.element)].column;
+      if (column >= 0) tangent(state_column(column)) += system_.value(flow.law, now);
     }
     if (drive_.ambient_moves()) {
       Moment above = now, below = now;

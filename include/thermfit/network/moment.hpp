@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "thermfit/types.hpp"
+#include "thermfit/network/room_history.hpp"
 
 namespace thermfit {
 
@@ -16,6 +16,8 @@ struct Moment {
   double first_ambient_degC = 0;     ///< the same at the first sample
   double measured_ambient_degC = 0;  ///< the reading of the ambient sensor, where the batch has one
   double first_measured_ambient_degC = 0;
+  const RoomHistory* ambient = nullptr;           ///< the course of ambient_degC over the batch
+  const RoomHistory* measured_ambient = nullptr;  ///< and of measured_ambient_degC
   const double* first_reading_degC =
       nullptr;                               ///< of every sensor, NaN where there is none; null where nothing is known
   double reading_degC = 0;                   ///< what the sensor would read, for laws of readings

@@ -61,8 +61,8 @@ class ThermalSystem {
     Shares into;
     BoundLaw law;
   };
-  /// Heat that depends on temperatures: W into the shares. With `element` >= 0 it is that conductance's base value
-  /// times the law times the temperature difference from b to a.
+  /// Heat that depends on temperatures: W into the shares. With `element` >= 0 the law is a temperature difference in K
+  /// that drives heat through that conductance's base value.
   struct StateFlow {
     Shares into;
     std::vector<Index> depends_on;
@@ -135,12 +135,19 @@ class ThermalSystem {
 
   /// G becomes G (1 + law), law of temperatures.
   void scale_conductance_by_state(Index element, Law law) {
+    const Index a = at(conductances, element).a, b = at(conductances, element).b;
+    std::vector<Index> depends_on{a};
+    if (b >= 0) depends_on.push_back(b);
+    drive_conductance(element, std::move(depends_on), [a, b, law = std::move(law)](const Moment& now, const double* p) {
+      return law(now, p) * ((b >= 0 ? now.temperature_degC[b] : now.ambient_degC) - now.temperature_degC[a]);
+    });
+  }
+
+  /// A further difference of law (K) drives heat through G towards the first side of the element, from its second.
+  void drive_conductance(Index element, std::vector<Index> depends_on, Law law_K) {
     const Conductance& one = at(conductances, element);
-    StateFlow flow{{{one.a, 1.0}}, {one.a}, bind(std::move(law)), element};
-    if (one.b >= 0) {
-      flow.into.emplace_back(one.b, -1.0);
-      flow.depends_on.push_back(one.b);
-    }
+    StateFlow flow{{{one.a, 1.0}}, std::move(depends_on), bind(std::move(law_K)), element};
+    if (one.b >= 0) flow.into.emplace_back(one.b, -1.0);
     state_flows.push_back(std::move(flow));
   }
 
