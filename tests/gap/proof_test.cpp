@@ -1,6 +1,7 @@
 #include "thermfit/gap/proof.hpp"
 
 #include "support/catch.hpp"
+#include "thermfit/effects/catalogue.hpp"
 
 using namespace thermfit;
 
@@ -12,7 +13,8 @@ struct Case {
   Judgement judgement;
   StageResiduals stages;
 
-  explicit Case(const std::vector<double>& left_K, std::size_t lone_batch = 99) {
+  explicit Case(const std::vector<double>& left_K, std::size_t lone_batch = 99,
+                const std::string& effect_name = "sensor-lag", double displacement_left_um = 0) {
     ObservedChannel channel;
     channel.name = "T1";
     channel.floor = 0.1;
@@ -29,6 +31,11 @@ struct Case {
       before.push_back(Vector::Constant(20, 1));
       after.push_back(Vector::Constant(20, left_K[b]));
     }
+    if (displacement_left_um > 0) {
+      channel.name = "Z";
+      channel.displacement = true;
+      found.seen.channels.push_back(channel);
+    }
     found.machine.heat_sources.emplace_back();
     found.machine.heat_sources[0].input = "heater";
     found.folds = folds_of(found.machine, found.seen);
@@ -36,13 +43,20 @@ struct Case {
     stages.as_simulated = {before};
     stages.calibrated = {before};
     stages.with_effect = {after};
+    if (displacement_left_um > 0) {
+      const SeriesByBatch left(left_K.size(), Vector::Constant(20, displacement_left_um));
+      found.calibrated.held.residual.push_back(before);
+      stages.as_simulated.push_back(before);
+      stages.calibrated.push_back(before);
+      stages.with_effect.push_back(left);
+    }
     FoundEffect effect;
-    effect.effect = "sensor-lag";
+    effect.effect = effect_name;
     effect.location = "T1";
     effect.confidence = 0.99;
     judgement.verdict = Verdict::effect;
     judgement.effects = {effect};
-    demand_proof(judgement, stages, found, {}, 1);
+    demand_proof(judgement, stages, found, standard_effects(), {}, 1);
   }
 };
 
@@ -73,4 +87,23 @@ TEST_CASE("with one or two batches an effect is a suspicion, at even odds at mos
   CHECK(one.judgement.verdict == Verdict::ambiguous);
   REQUIRE(one.judgement.effects.size() == 1);
   CHECK(one.judgement.effects[0].confidence <= 0.5);
+}
+
+TEST_CASE("an effect on the machine that brings temperatures closer at the cost of the displacement is not named") {
+  const std::vector<double> closer{0.3, 0.4, 0.2, 0.3};
+  CHECK(Case(closer, 99, "missing-link", 1.2).judgement.verdict == Verdict::unknown);
+  CHECK(Case(closer, 99, "missing-link", 0.7).judgement.verdict == Verdict::effect);
+  // A thermometer has no part in the displacement.
+  CHECK(Case(closer, 99, "sensor-lag", 1.02).judgement.verdict == Verdict::effect);
+}
+
+TEST_CASE(
+    "a displacement adds up all parts: what calibration leaves of it tells of a gap sooner than one thermometer") {
+  MachineRecord seen;
+  seen.channels.resize(1);
+  seen.channels[0].floor = 1;
+  const ChannelResiduals twice{{Vector::Constant(20, 2)}};
+  CHECK_FALSE(gap_is_real(seen, twice, {}));
+  seen.channels[0].displacement = true;
+  CHECK(gap_is_real(seen, twice, {}));
 }

@@ -129,7 +129,7 @@ inline Diagnosed diagnose_fully(const ThermalNetwork& network, const Campaign& r
   result.residuals.as_simulated = found.as_given;
   result.residuals.calibrated = found.calibrated.held.residual;
   result.residuals.with_effect = judgement.best->held.residual;
-  demand_proof(judgement, result.residuals, found, options.judging, options.seed);
+  demand_proof(judgement, result.residuals, found, library, options.judging, options.seed);
 
   Diagnosis& diagnosis = result.diagnosis;
   diagnosis.machine = network.name;

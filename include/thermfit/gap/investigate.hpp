@@ -95,6 +95,14 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
       if (again[i].fit.log_posterior > result.single[i].fit.log_posterior) result.single[i] = std::move(again[i]);
     detail::best_first(result.single);
     detail::PlaceWalk(inquiry, result.screened, own, result.single, 0, refit).run(options.most_steps);
+    // The effects dropped again: what a better valley of the calibration gains is not theirs.
+    std::vector<Explanation> dropped(std::min<std::size_t>(3, result.single.size()));
+    in_parallel(dropped.size(), options.threads, [&](std::size_t i) {
+      const MapFit& fit = result.single[result.single.size() * i / dropped.size()].fit;
+      dropped[i] = explained_by(inquiry, {}, fit.t.head(own), fit.noise, thorough);
+    });
+    for (Explanation& one : dropped)
+      if (one.fit.log_posterior > result.calibrated.fit.log_posterior) result.calibrated = std::move(one);
   }
 
   // A second effect on top of a first that is worth its name: what promises more than the number of candidates accounts

@@ -155,7 +155,7 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   result.best = result.nearest = &found.calibrated;
   result.grounds.candidates = found.screened.size();
   if (!found.single.empty()) result.grounds = detail::grounds_of(found, found.single.front());
-  const bool real = misfit_of(found.seen, found.calibrated.held.residual).maxCoeff() > options.real_from;
+  const bool real = gap_is_real(found.seen, found.calibrated.held.residual, options);
   const double odds = found.single.empty() ? -INFINITY
                                            : plausibility(found.single[0]) - plausibility(found.calibrated) -
                                                  price_of_search(found.screened.size());
@@ -168,7 +168,6 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   }
   if (found.single.empty()) return result;
 
-  const Explanation& single = found.single.front();
   const double second = found.several.empty() ? 0 : detail::probability_of_second(found, options);
   const bool two = second > 0.5;
   const std::vector<Explanation>& accounts = two ? found.several : found.single;

@@ -12,7 +12,9 @@ namespace thermfit {
 /// The few numbers between what was measured and probabilities: fitted by logistic regression on generated campaigns
 /// and the withheld cases, and checked by leaving each case out (tests/blind/README.md).
 struct JudgingOptions {
-  double real_from = 9;         ///< misfit of a channel, (rms / expected)^2, beyond which a gap is real
+  /// Misfit, (rms / expected)^2, beyond which a gap is real: of a temperature, where the place of the thermometer
+  /// within its part counts, and of a displacement, which adds up all parts.
+  double real_from_temperature = 9, real_from_displacement = 2;
   double least_excess = 1;      ///< below it, summed over channels, sensors only had to be placed
   double known_by_share = 3;    ///< log odds that the cause is known: this times the share that it closes …
   double known_by_left = 1.6;   ///< … less this times log(1 + what it leaves)
@@ -54,6 +56,16 @@ inline Closure closure_of(const MachineRecord& seen, const HeldOut& before, cons
     result.left += weight * to(c);
   }
   return result;
+}
+
+/// Whether calibration leaves what no right machine would.
+inline bool gap_is_real(const MachineRecord& seen, const ChannelResiduals& calibrated, const JudgingOptions& options) {
+  const Vector misfit = misfit_of(seen, calibrated);
+  for (std::size_t c = 0; c < seen.channels.size(); ++c)
+    if (misfit(static_cast<Index>(c)) >
+        (seen.channels[c].displacement ? options.real_from_displacement : options.real_from_temperature))
+      return true;
+  return false;
 }
 
 /// Probability that what was found is the cause rather than the nearest thing in the catalogue to an unknown one.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fresh.hpp"
 #include "truth.hpp"
 
 namespace blind {
@@ -26,7 +27,8 @@ struct Mark {
   std::vector<Claim> claims;
   double calibrated = NAN, with_effect = NAN, shrink_percent = NAN;
   std::optional<std::pair<double, double>> interval;
-  double oracle_shrink_percent = NAN, fresh_shrink_percent = NAN, seconds = NAN;
+  double oracle_shrink_percent = NAN, seconds = NAN;
+  std::optional<MeasuredShrink> fresh;  ///< on batches that the diagnosis has not seen
 };
 
 inline bool holds(const std::vector<std::string>& list, const std::string& item) {

@@ -82,19 +82,19 @@ struct Runner {
   std::string written(const Case& one) const { return (results / (one.name + ".machine.json")).string(); }
 
   /// The calibrated machine against the one with the effect, both made from the recorded batches.
-  double shrink_on_fresh(const Case& one) const {
+  std::optional<MeasuredShrink> shrink_on_fresh(const Case& one) const {
     const std::string calibrated = (results / (one.name + ".calibrated.json")).string();
     if (!fs::exists(calibrated) || fs::last_write_time(calibrated) < fs::last_write_time(program)) {
       std::string line = quoted(program) + " calibrate " + quoted((one.folder / "machine.json").string());
       for (const fs::path& file : batches_in(one.folder / "real")) line += " " + quoted(file.string());
-      if (std::system((line + " -o " + quoted(calibrated) + " > /dev/null 2>&1").c_str()) == -1) return NAN;
+      if (std::system((line + " -o " + quoted(calibrated) + " > /dev/null 2>&1").c_str()) == -1) return std::nullopt;
     }
     std::vector<std::string> batches;
     for (const fs::path& file : batches_in(one.folder / "fresh")) batches.push_back(file.string());
     try {
-      return 100 * (1 - gap_um(written(one), batches) / gap_um(calibrated, batches));
+      return measured_shrink(errors_of(calibrated, batches), errors_of(written(one), batches));
     } catch (const std::exception&) {
-      return NAN;
+      return std::nullopt;
     }
   }
 
@@ -113,7 +113,7 @@ struct Runner {
       }
     }
     mark.seconds = seconds;
-    if (fresh && mark.named && fs::is_directory(one.folder / "fresh")) mark.fresh_shrink_percent = shrink_on_fresh(one);
+    if (fresh && mark.named && fs::is_directory(one.folder / "fresh")) mark.fresh = shrink_on_fresh(one);
     if (with_oracle && !one.truth.effects.empty() && one.truth.detectable) {
       std::vector<std::string> names;
       for (const TrueEffect& effect : one.truth.effects) names.push_back(effect.names.front());

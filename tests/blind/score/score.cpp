@@ -107,8 +107,7 @@ int run(const Options& options) {
     if (mark.interval)
       std::cout << " in " << thermfit::fixed_text(mark.interval->first, 0) << " … "
                 << thermfit::fixed_text(mark.interval->second, 0);
-    if (std::isfinite(mark.fresh_shrink_percent))
-      std::cout << ", fresh " << thermfit::fixed_text(mark.fresh_shrink_percent, 0);
+    if (mark.fresh) std::cout << ", fresh " << thermfit::fixed_text(mark.fresh->percent, 0);
     std::cout << "\n";
   }
   std::cout << blind::text_of(summary);

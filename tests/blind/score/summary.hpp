@@ -84,9 +84,8 @@ struct Summary {
       if (std::isfinite(mark.calibrated)) harm.add(mark.with_effect > mark.calibrated);
       if (mark.oracle_shrink_percent > 5)
         against_oracle.push_back(std::max(0., mark.shrink_percent) / mark.oracle_shrink_percent);
-      if (mark.interval && std::isfinite(mark.fresh_shrink_percent))
-        coverage.add(mark.interval->first <= mark.fresh_shrink_percent &&
-                     mark.fresh_shrink_percent <= mark.interval->second);
+      if (mark.interval && mark.fresh)
+        coverage.add(agree({mark.shrink_percent, {mark.interval->first, mark.interval->second}}, *mark.fresh));
     } else if (truth.verdict == "effect" && truth.detectable && mark.oracle_shrink_percent > 5) {
       against_oracle.push_back(0);
     }
@@ -147,7 +146,7 @@ inline std::string text_of(const Summary& summary) {
   totals.add({"worse with the effect than without", percent(summary.harm)});
   totals.add({"median shrink", number("shrink_median_percent", 1) + " %"});
   totals.add({"median shrink, of the oracle's", number("shrink_of_oracle", 1, 100) + " %"});
-  totals.add({"interval holds the shrink on fresh batches", percent(summary.coverage)});
+  totals.add({"interval agrees with the shrink on fresh batches", percent(summary.coverage)});
   totals.add({"calibration error of the confidence", number("calibration_error", 3)});
   totals.add({"time, median and longest", number("seconds_median", 2) + " s, " + number("seconds_longest", 2) + " s"});
   totals.add({"no answer", std::to_string(summary.failed)});
