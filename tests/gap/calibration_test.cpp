@@ -29,6 +29,31 @@ Campaign measured(const ThermalNetwork& truth, double noise_K, double noise_um) 
   return campaign;
 }
 
+/// Every number of the machine's physics off by this share, up and down in turn.
+ThermalNetwork off_by(ThermalNetwork machine, double share) {
+  double factor = 1 + share;
+  const auto move = [&](double& value) {
+    value *= factor;
+    factor = 1 / factor;
+  };
+  for (ThermalNetwork::Node& node : machine.nodes) {
+    move(node.capacity_J_per_K);
+    move(node.ambient_W_per_K);
+  }
+  for (ThermalNetwork::Link& link : machine.links) move(link.conductance_W_per_K);
+  for (ThermalNetwork::HeatSource& source : machine.heat_sources) move(source.power_W);
+  for (auto& [node, um_per_K] : machine.displacements[0].um_per_K) move(um_per_K);
+  return machine;
+}
+
+MapFitOptions following_trust() {
+  MapFitOptions options;
+  options.tolerance = 0.01;
+  options.most_iterations = 60;
+  options.fit_trust = true;
+  return options;
+}
+
 }  // namespace
 
 TEST_CASE("calibration brings a miscalibrated machine back, within its own standard errors", "[gap][calibration]") {
@@ -107,4 +132,33 @@ TEST_CASE("missing readings and machines without a displacement are calibrated a
   const Calibration result = calibrate(seen, machine, library, {1, 1, 0.7, 50});
   CHECK(result.fit.t.allFinite());
   CHECK(rms_of(result.fit.residual[0]) < 0.025);
+}
+
+TEST_CASE("a machine that is known better than its document says is trusted as it deserves, one that is not is not",
+          "[gap][calibration]") {
+  const ThermalNetwork truth = example_network();
+  const auto trust_if_off_by = [&](double share) {
+    const ThermalNetwork nominal = off_by(truth, share);
+    return map_fit(observations_of(nominal, measured(truth, 0.03, 0.2)), nominal, library, following_trust()).trust;
+  };
+  // The document says 30 %.
+  CHECK(trust_if_off_by(0.02) < 0.35);
+  CHECK(trust_if_off_by(0.09) == Approx(0.3).margin(0.15));
+  CHECK(trust_if_off_by(0.45) == 1);
+}
+
+TEST_CASE("calibration swallows less of an effect where the machine is known well", "[gap][calibration]") {
+  ThermalNetwork truth = example_network();
+  truth.effects = {{"thermal-memory", "motor", "", {{"capacity_J_per_K", 4000}, {"conductance_W_per_K", 4}}}};
+  const ThermalNetwork nominal = example_network();
+  const MachineRecord seen = observations_of(nominal, measured(truth, 0.05, 0.3));
+  ThermalNetwork with_effect = nominal;
+  with_effect.effects = {{"thermal-memory", "motor", "", {{"capacity_J_per_K", 6300}, {"conductance_W_per_K", 2}}}};
+  const auto gain = [&](const MapFitOptions& options) {
+    return map_fit(seen, with_effect, library, options).log_evidence -
+           map_fit(seen, nominal, library, options).log_evidence;
+  };
+  MapFitOptions as_documented = following_trust();
+  as_documented.fit_trust = false;
+  CHECK(gain(following_trust()) > gain(as_documented) + 5);
 }

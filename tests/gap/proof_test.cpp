@@ -14,7 +14,7 @@ struct Case {
   StageResiduals stages;
 
   explicit Case(const std::vector<double>& left_K, std::size_t lone_batch = 99,
-                const std::string& effect_name = "sensor-lag", double displacement_left_um = 0) {
+                const std::string& effect_name = "sensor-lag", double displacement_left_um = 0, double odds = 1) {
     ObservedChannel channel;
     channel.name = "T1";
     channel.floor = 0.1;
@@ -56,6 +56,7 @@ struct Case {
     effect.confidence = 0.99;
     judgement.verdict = Verdict::effect;
     judgement.effects = {effect};
+    judgement.odds = odds;
     demand_proof(judgement, stages, found, standard_effects(), {}, 1);
   }
 };
@@ -106,4 +107,11 @@ TEST_CASE(
   CHECK_FALSE(gap_is_real(seen, twice, {}));
   seen.channels[0].displacement = true;
   CHECK(gap_is_real(seen, twice, {}));
+}
+
+TEST_CASE("overwhelming evidence names an effect whose gap calibration nearly closes at a price") {
+  const std::vector<double> hardly{0.96, 0.97, 0.96, 0.97};
+  CHECK(Case(hardly, 99, "missing-link", 0, 6).judgement.verdict == Verdict::unknown);
+  CHECK(Case(hardly, 99, "missing-link", 0, 8).judgement.verdict == Verdict::effect);
+  CHECK(Case(hardly, 99, "missing-link", 1.2, 8).judgement.verdict == Verdict::unknown);
 }

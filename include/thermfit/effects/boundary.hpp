@@ -141,7 +141,7 @@ class Radiation : public Effect {
   std::vector<EffectParameter> parameters(const ThermalNetwork& network,
                                           const ThermalNetwork::AddedEffect& added) const override {
     nodes_at(network, added.location);
-    return {positive_parameter("share", "", 0.5), room_lag_parameter(3600, {1800})};
+    return {positive_parameter("share", "", 0.5), room_lag_parameter(3600, {0, 1800})};
   }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {

@@ -93,29 +93,37 @@ inline std::vector<Screened> finalists(const std::vector<Screened>& screened, st
   return result;
 }
 
-/// Refits every one of `chosen` on top of `kept` effects: a few steps for all, then to the end for those within sight
-/// of the leader.
+/// Refits every one of `chosen` on top of `kept` effects: a few steps for all, then to the end for the `to_the_end`
+/// that have come furthest and the few whose next step, taken for the held-out batches, promises most.
 inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector<Screened>& chosen,
                                        const std::vector<ThermalNetwork::AddedEffect>& kept, const MapFit& base,
                                        const MapFitOptions& options, std::size_t to_the_end = 5) {
   std::vector<Explanation> result(chosen.size());
   MapFitOptions brief = options;
   brief.most_iterations = 3;
+  brief.trust = base.trust;
   in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
     std::vector<ThermalNetwork::AddedEffect> effects = kept;
     effects.push_back(chosen[i].added);
     result[i] = explained_by(inquiry, effects, chosen[i].start, base.noise, brief);
   });
-  std::vector<double> reached;
-  for (const Explanation& one : result) reached.push_back(one.fit.log_posterior);
-  std::sort(reached.rbegin(), reached.rend());
-  if (reached.empty()) return result;
-  const double within = reached[std::min(to_the_end, reached.size()) - 1];
+  if (result.empty()) return result;
+  const auto of_the_best = [&](std::size_t count, auto&& figure) {
+    std::vector<double> figures;
+    for (const Explanation& one : result) figures.push_back(figure(one));
+    std::sort(figures.rbegin(), figures.rend());
+    return figures[std::min(count, figures.size()) - 1];
+  };
+  const double reached = of_the_best(to_the_end, [](const Explanation& one) { return one.fit.log_evidence; });
+  const double promised = of_the_best(3, [](const Explanation& one) { return one.held.log_score; });
   in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
-    if (result[i].fit.converged || result[i].fit.log_posterior < within) return;
+    if (result[i].fit.converged) return;
+    if (result[i].fit.log_evidence < reached && result[i].held.log_score < promised) return;
     const Vector start = result[i].fit.t;
     const std::vector<ResidualNoise> noise = result[i].fit.noise;
-    result[i] = explained_by(inquiry, result[i].effects, start, noise, options);
+    MapFitOptions onward = options;
+    onward.trust = result[i].fit.trust;
+    result[i] = explained_by(inquiry, result[i].effects, start, noise, onward);
   });
   return result;
 }

@@ -56,7 +56,9 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
   const Index n = fit.t.size();
   Vector low(n), high(n);
   for (Index j = 0; j < n; ++j) std::tie(low(j), high(j)) = detail::coordinate_range(fit.parameter(j));
-  const Matrix information = kept.information + Matrix::Identity(n, n);
+  const Vector precision = fit.precision();
+  Matrix information = kept.information;
+  information.diagonal() += precision;
 
   std::vector<Excitation> training;
   std::vector<std::size_t> batches;
@@ -67,7 +69,7 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
     }
   const auto cost = [&](const Vector& t) {
     const std::vector<Simulation> simulated = simulate(fit.network_at(t), training, library);
-    double sum = t.squaredNorm();
+    double sum = precision.dot(t.cwiseAbs2());
     for (std::size_t i = 0; i < batches.size(); ++i)
       for (std::size_t c = 0; c < seen.channels.size(); ++c) {
         Vector r = seen.channels[c].measured[batches[i]] - simulated[i].channels.col(seen.channels[c].column);
@@ -76,11 +78,12 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
       }
     return sum;
   };
-  double before = fit.t.squaredNorm();
+  double before = precision.dot(fit.t.cwiseAbs2());
   for (const std::size_t b : batches) before += fit.equations.by_batch[b].squares;
   const Matrix identity = Matrix::Identity(n, n);
   for (double damping = 0; damping<1e6; damping = damping> 0 ? 30 * damping : 0.3) {
-    const Vector step = detail::step_in_box(information + damping * identity, kept.score - fit.t, fit.t, low, high);
+    const Vector step = detail::step_in_box(information + damping * identity,
+                                            kept.score - precision.cwiseProduct(fit.t), fit.t, low, high);
     const double after = cost(fit.t + step);
     if (std::isfinite(after) && after < before) return fit.t + step;
   }

@@ -21,7 +21,7 @@ struct SearchOptions {
   unsigned threads = 0;    ///< 0: all cores
   double second_from = 4;  ///< misfit of a channel, (rms / expected)^2, beyond which a second effect is sought at once
   double tolerance = 1.5;  ///< nats at which a refit of a candidate stops
-  int most_iterations = 14;
+  int most_iterations = 18;
   std::function<void(const std::string& step, double share)> progress;
 };
 
@@ -67,6 +67,7 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   MapFitOptions thorough;
   thorough.tolerance = 0.3;
   thorough.most_iterations = 40;
+  thorough.fit_trust = true;
   result.calibrated = explained_by(inquiry, {}, {}, {}, thorough);
 
   const Index own = result.calibrated.fit.t.size();
@@ -74,6 +75,8 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   MapFitOptions refit;
   refit.tolerance = options.tolerance;
   refit.most_iterations = options.most_iterations;
+  refit.fit_trust = true;
+  refit.trust = result.calibrated.fit.trust;
   {
     const ScreeningBase base(result.seen, result.calibrated.fit, library, result.machine.effects.size());
     result.screened = screen(base, library, candidates, options.threads);
@@ -92,17 +95,19 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
     in_parallel(again.size(), options.threads,
                 [&](std::size_t i) { again[i] = explained_by(inquiry, {result.single[i].effects[0]}, {}, {}, refit); });
     for (std::size_t i = 0; i < again.size(); ++i)
-      if (again[i].fit.log_posterior > result.single[i].fit.log_posterior) result.single[i] = std::move(again[i]);
+      if (again[i].fit.log_evidence > result.single[i].fit.log_evidence) result.single[i] = std::move(again[i]);
     detail::best_first(result.single);
     detail::PlaceWalk(inquiry, result.screened, own, result.single, 0, refit).run(options.most_steps);
     // The effects dropped again: what a better valley of the calibration gains is not theirs.
     std::vector<Explanation> dropped(std::min<std::size_t>(3, result.single.size()));
     in_parallel(dropped.size(), options.threads, [&](std::size_t i) {
       const MapFit& fit = result.single[result.single.size() * i / dropped.size()].fit;
-      dropped[i] = explained_by(inquiry, {}, fit.t.head(own), fit.noise, thorough);
+      MapFitOptions onward = thorough;
+      onward.trust = fit.trust;
+      dropped[i] = explained_by(inquiry, {}, fit.t.head(own), fit.noise, onward);
     });
     for (Explanation& one : dropped)
-      if (one.fit.log_posterior > result.calibrated.fit.log_posterior) result.calibrated = std::move(one);
+      if (one.fit.log_evidence > result.calibrated.fit.log_evidence) result.calibrated = std::move(one);
   }
 
   // A second effect on top of a first that is worth its name: what promises more than the number of candidates accounts

@@ -17,6 +17,7 @@ struct Judgement {
   const Explanation* best = nullptr;     ///< the account behind `effects`; calibration alone where there are none
   const Explanation* nearest = nullptr;  ///< the best account tried, named or not
   Grounds grounds;                       ///< of `nearest`
+  double odds = -INFINITY;  ///< log odds that there is an effect, by the evidence and the price of the search
 };
 
 namespace detail {
@@ -156,10 +157,10 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   result.grounds.candidates = found.screened.size();
   if (!found.single.empty()) result.grounds = detail::grounds_of(found, found.single.front());
   const bool real = gap_is_real(found.seen, found.calibrated.held.residual, options);
-  const double odds = found.single.empty() ? -INFINITY
-                                           : plausibility(found.single[0]) - plausibility(found.calibrated) -
-                                                 price_of_search(found.screened.size());
-  if (!real && odds < 0) {
+  if (!found.single.empty())
+    result.odds =
+        plausibility(found.single[0]) - plausibility(found.calibrated) - price_of_search(found.screened.size());
+  if (!real && result.odds < 0) {
     if (detail::name_offset(inquiry, found, result)) return result;
     const double placed = excess_of(
         misfit_of(found.seen, found.placed.residual.empty() ? found.calibrated.held.residual : found.placed.residual));
@@ -173,7 +174,7 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
   result.nearest = &accounts.front();
   result.grounds = detail::grounds_of(found, accounts.front());
-  const double known = probability_known(result.grounds.closes, result.grounds.leaves, options) * logistic(odds);
+  const double known = probability_known(result.grounds.closes, result.grounds.leaves, options) * logistic(result.odds);
   const std::vector<double> weight = probabilities(accounts);
   if (known < 0.5) return result;
 

@@ -16,13 +16,14 @@ struct MapFit {
   ThermalNetwork prior;  ///< the machine before the data: the means of the priors, effects complete
   std::vector<Parameter> parameters;
   Vector t;                           ///< working coordinates: prior standard deviations from the prior's mean
+  double trust = 1;                   ///< the machine's own priors are as wide as this times what its document says
   std::vector<ResidualNoise> noise;   ///< by channel
   std::vector<Simulation> simulated;  ///< without sensitivities
   ChannelResiduals residual;
   SummedEquations equations;
   double log_likelihood = 0;
-  double log_posterior = 0;  ///< log_likelihood - t't/2
-  double log_evidence = 0;   ///< Laplace: log_posterior - log|J'R^-1 J + I| / 2
+  double log_posterior = 0;  ///< log_likelihood + log_prior(t)
+  double log_evidence = 0;   ///< Laplace: log_posterior - log|J'R^-1 J + precision| / 2
   int iterations = 0;
   bool converged = false;
 
@@ -42,6 +43,18 @@ struct MapFit {
   }
   const Parameter& parameter(Index j) const { return parameters[static_cast<std::size_t>(j)]; }
 
+  /// Of the prior of each working coordinate.
+  Vector precision() const {
+    Vector result = Vector::Ones(static_cast<Index>(parameters.size()));
+    for (Index j = 0; j < result.size(); ++j)
+      if (parameter(j).of_machine()) result(j) /= trust * trust;
+    return result;
+  }
+  double log_prior(const Vector& coordinates) const {
+    const Vector weight = precision();
+    return 0.5 * (weight.array().log().sum() - weight.dot(coordinates.cwiseAbs2()));
+  }
+
   /// Sum over all batches, without the prior.
   NormalEquations total() const {
     NormalEquations result(t.size());
@@ -52,11 +65,13 @@ struct MapFit {
     }
     return result;
   }
-  /// Of the working coordinates, after the data: (J'R^-1 J + I)^-1.
-  Matrix covariance() const {
-    const Matrix identity = Matrix::Identity(t.size(), t.size());
-    return (total().information + identity).llt().solve(identity);
+  /// Of the working coordinates after the data: J'R^-1 J + precision.
+  Matrix posterior_information() const {
+    Matrix result = total().information;
+    result.diagonal() += precision();
+    return result;
   }
+  Matrix covariance() const { return posterior_information().llt().solve(Matrix::Identity(t.size(), t.size())); }
 };
 
 struct MapFitOptions {
@@ -64,6 +79,8 @@ struct MapFitOptions {
   double tolerance = 0.3;            ///< nats of log posterior an iteration must gain to go on
   std::vector<ResidualNoise> noise;  ///< to start from; empty: from the residual at the start
   Vector start;                      ///< working coordinates; empty: the prior's means
+  double trust = 1;                  ///< see MapFit::trust
+  bool fit_trust = false;            ///< whether it follows the data: by most evidence, never wider than documented
 };
 
 namespace detail {
@@ -144,6 +161,22 @@ inline bool all_finite(const MachineRecord& seen, const std::vector<Simulation>&
   return true;
 }
 
+/// Least that MapFit::trust may become: no machine document is exact.
+constexpr double least_trust = 0.2;
+
+/// MapFit::trust of most evidence near the present one: the mean square of the coordinates over the number of them that
+/// the data determine (MacKay 1992).
+inline double better_trust(const MapFit& fit) {
+  const Matrix covariance = fit.covariance();
+  double squares = 0, determined = 0;
+  for (Index j = 0; j < fit.t.size(); ++j) {
+    if (!fit.parameter(j).of_machine()) continue;
+    squares += fit.t(j) * fit.t(j);
+    determined += 1 - covariance(j, j) / (fit.trust * fit.trust);
+  }
+  return determined > 0 ? std::clamp(std::sqrt(squares / determined), least_trust, 1.0) : fit.trust;
+}
+
 }  // namespace detail
 
 /// Noise of every channel from its residual, within the channel's bounds.
@@ -167,7 +200,8 @@ inline double log_likelihood(const MachineRecord& seen, const ChannelResiduals& 
 ///
 /// Levenberg-Marquardt on the whitened residual, the noise of each channel estimated anew after every step, so that the
 /// weights are those of a concentrated likelihood. Damping is in units of the prior. `machine` holds the means of the
-/// priors.
+/// priors. Where asked to, the width of the machine's own priors follows too once the rest has settled: too wide, they
+/// let calibration swallow what a well-known machine lacks.
 inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, const EffectLibrary& library,
                       const MapFitOptions& options = {}) {
   MapFit fit;
@@ -178,6 +212,7 @@ inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, 
   for (Index j = 0; j < n; ++j) std::tie(low(j), high(j)) = detail::coordinate_range(fit.parameter(j));
   fit.t = options.start.size() == n ? options.start : Vector::Zero(n);
   fit.t = fit.t.cwiseMax(low).cwiseMin(high);
+  fit.trust = options.trust;
 
   const auto simulated_at = [&](const Vector& t) {
     return simulate(fit.network_at(t), seen.excitations, library, fit.parameters);
@@ -185,18 +220,20 @@ inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, 
   fit.simulated = simulated_at(fit.t);
   fit.residual = residuals_of(seen, fit.simulated);
   fit.noise = noise_of(seen, fit.residual, options.noise);
-  const auto posterior = [&] { return log_likelihood(seen, fit.residual, fit.noise) - 0.5 * fit.t.squaredNorm(); };
+  const auto posterior = [&] { return log_likelihood(seen, fit.residual, fit.noise) + fit.log_prior(fit.t); };
   fit.log_posterior = posterior();
 
   double damping = 1e-2;
+  int trials_of_trust = options.fit_trust ? 4 : 0;
   const Matrix identity = Matrix::Identity(n, n);
   for (fit.iterations = 0; fit.iterations < options.most_iterations && !fit.converged; ++fit.iterations) {
     const auto whiteners = whiteners_of(seen, fit.noise);
     fit.equations = summed_equations(linearized(seen, fit.simulated, fit.slopes(), whiteners));
     const NormalEquations total = fit.total();
-    const Matrix information = total.information + identity;
-    const Vector gradient = total.score - fit.t;
-    const double cost = total.squares + fit.t.squaredNorm();
+    const Vector precision = fit.precision();
+    const Matrix information = fit.posterior_information();
+    const Vector gradient = total.score - precision.cwiseProduct(fit.t);
+    const double cost = total.squares + precision.dot(fit.t.cwiseAbs2());
     bool accepted = false;
     for (int attempt = 0; attempt < 8 && !accepted; ++attempt) {
       const Vector step = detail::step_in_box(information + damping * identity, gradient, fit.t, low, high);
@@ -204,7 +241,7 @@ inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, 
       std::vector<Simulation> trial = simulated_at(t);
       if (detail::all_finite(seen, trial)) {
         ChannelResiduals residual = residuals_of(seen, trial);
-        if (detail::whitened_squares(residual, whiteners) + t.squaredNorm() < cost) {
+        if (detail::whitened_squares(residual, whiteners) + precision.dot(t.cwiseAbs2()) < cost) {
           fit.t = t;
           fit.simulated = std::move(trial);
           fit.residual = std::move(residual);
@@ -217,12 +254,18 @@ inline MapFit map_fit(const MachineRecord& seen, const ThermalNetwork& machine, 
     const double reached = posterior();
     fit.converged = !accepted || reached - fit.log_posterior < options.tolerance;
     fit.log_posterior = reached;
+    if (!fit.converged || trials_of_trust-- <= 0) continue;
+    const double trust = detail::better_trust(fit);
+    if (std::abs(std::log(trust / fit.trust)) < 0.1) continue;
+    fit.trust = trust;
+    fit.log_posterior = posterior();
+    fit.converged = false;
   }
   fit.equations = summed_equations(linearized(seen, fit.simulated, fit.slopes(), whiteners_of(seen, fit.noise)));
   for (Simulation& one : fit.simulated) one.jacobian.resize(0, 0);
   fit.log_likelihood = log_likelihood(seen, fit.residual, fit.noise);
-  fit.log_posterior = fit.log_likelihood - 0.5 * fit.t.squaredNorm();
-  const Eigen::LLT<Matrix> factor(fit.total().information + identity);
+  fit.log_posterior = fit.log_likelihood + fit.log_prior(fit.t);
+  const Eigen::LLT<Matrix> factor(fit.posterior_information());
   fit.log_evidence = fit.log_posterior - Matrix(factor.matrixL()).diagonal().array().log().sum();
   return fit;
 }

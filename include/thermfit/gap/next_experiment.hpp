@@ -79,7 +79,7 @@ inline NextExperiment next_experiment(const std::vector<FittedRival>& rivals, co
   result.confusion_before = std::clamp(b.probability / std::max(a.probability + b.probability, 1e-9), 1e-6, .5);
   const double reached = std::pow(2 * detail::normal_quantile(result.confusion_before), 2);
   const Index n = calibrated.t.size();
-  const Matrix information = calibrated.total().information + Matrix::Identity(n, n);
+  const Matrix information = calibrated.posterior_information();
   const Schedule* best = nullptr;
   std::vector<Schedule> menu = experiment_menu(calibrated.prior, seen);
   std::vector<std::string> suspects;

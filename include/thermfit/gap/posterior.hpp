@@ -18,6 +18,7 @@ struct JudgingOptions {
   double least_excess = 1;      ///< below it, summed over channels, sensors only had to be placed
   double known_by_share = 3;    ///< log odds that the cause is known: this times the share that it closes …
   double known_by_left = 1.6;   ///< … less this times log(1 + what it leaves)
+  double beyond_doubt = 7;      ///< log odds of an effect (a thousand to one) that need no gap to be seen shrinking
   double law_tolerance = 0.05;  ///< share of its evidence that the form of a law may be short of, no second effect
   double listed = 0.05;         ///< rivals above this probability are listed
 };

@@ -37,7 +37,8 @@ inline bool harms_displacements(const MachineRecord& seen, const StageResiduals&
 }
 
 /// Takes back what held-out batches do not bear out. With fewer than three, what fits best is a suspicion: `ambiguous`,
-/// at most even odds. With some, but no channel that shrinks beyond doubt: nothing is named. Nor is something that acts
+/// at most even odds. With some, but no channel that shrinks beyond doubt: nothing is named, unless the evidence is
+/// overwhelming, as it is where calibration hides an effect in parameters that cost it much. Nor is something that acts
 /// on the machine, not on a reading, and brings temperatures closer at the cost of displacements. `stages` are the
 /// residuals with what `judgement` names; they follow it.
 inline void demand_proof(Judgement& judgement, StageResiduals& stages, const Investigation& found,
@@ -55,7 +56,7 @@ inline void demand_proof(Judgement& judgement, StageResiduals& stages, const Inv
     if (found.folds.empty()) return;
   }
   const bool harms = machine && harms_displacements(found.seen, stages);
-  if (!harms && shrinks_somewhere(found.seen, stages, offset, seed)) return;
+  if (!harms && (judgement.odds > options.beyond_doubt || shrinks_somewhere(found.seen, stages, offset, seed))) return;
   judgement.effects.clear();
   judgement.best = &found.calibrated;
   stages.with_effect = stages.calibrated;

@@ -32,7 +32,7 @@ class ScreeningBase {
         simulated_(simulate(fit.network(), seen.excitations, library, fit.parameters)),
         whiteners_(whiteners_of(seen, fit.noise)),
         model_(linearized(seen, simulated_, fit.slopes(), whiteners_)),
-        prior_(Matrix::Identity(fit.t.size(), fit.t.size())),
+        prior_(fit.precision().asDiagonal()),
         factor_(fit.total().information + prior_),
         bare_(fit.network()) {
     bare_.effects.resize(own_effects);
@@ -205,7 +205,7 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
   for (int pass = 0; pass < 3; ++pass) {
     const Eigen::LLT<Matrix> factor = base.factor(weights);
     Matrix right = Matrix::Zero(n, 2);  // J'WV, gradient
-    right.col(1) = -fit.t;
+    right.col(1) = -fit.precision().cwiseProduct(fit.t);
     double own_sum = range.prior_information, along_sum = range.prior_information * range.prior_mean;
     for (std::size_t c = 0; c < channels; ++c) {
       const double weight = weights(static_cast<Index>(c));
@@ -238,12 +238,12 @@ inline Screened screen_one(const ScreeningBase& base, const EffectLibrary& libra
   if (size == 0) return result;
   result.start = fit.t + move;
   const double shift = size - range.prior_mean;
-  const double prior = -0.5 * result.start.squaredNorm() - 0.5 * shift * shift * range.prior_information;
+  const double prior = fit.log_prior(result.start) - 0.5 * shift * shift * range.prior_information;
   for (std::size_t k = 0; k < parameters.size(); ++k)
     if (detail::carries_size(parameters[k]))
       result.added.parameters[k].second = detail::value_at_size(parameters[k], begun.parameters[k].second, size);
   if (!with_noise) {
-    result.gain = prior + 0.5 * fit.t.squaredNorm();
+    result.gain = prior - fit.log_prior(fit.t);
     for (std::size_t c = 0; c < channels; ++c)
       result.gain += 0.5 * detail::whitened_count(base, c) * std::log(weights(static_cast<Index>(c)));
     return result;

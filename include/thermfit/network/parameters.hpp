@@ -39,6 +39,9 @@ struct Parameter {
   double lower = -std::numeric_limits<double>::infinity();  ///< of the value
   double upper = std::numeric_limits<double>::infinity();
 
+  /// A number of the machine's own physics, as its document states it; not how it is read, nor what was added.
+  bool of_machine() const { return kind <= Kind::expansion; }
+
   double value(double t) const { return logarithmic ? mean * std::exp(sd * t) : mean + sd * t; }
   double coordinate(double value) const { return logarithmic ? std::log(value / mean) / sd : (value - mean) / sd; }
   /// dvalue/dt at t.
