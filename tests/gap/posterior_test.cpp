@@ -45,6 +45,18 @@ TEST_CASE("what an account leaves where it explains counts against it") {
   CHECK(probability_known(closure.share, closure.left, {}) < probability_known(1, 0, {}));
 }
 
+TEST_CASE("an account of heat must close what is really open, wherever that is") {
+  const MachineRecord seen = two_channels();
+  // It explains T2; at T1, four times further off than a right machine would be, hardly anything.
+  const HeldOut before = held(12, 3, 0, 0), after = held(11, 1, 10, 100);
+  CHECK(closure_of(seen, before, after).share > 0.9);
+  const Closure closure = closure_of_heat(seen, before, after, {});
+  CHECK(closure.share == Approx(23.0 / 143));
+  CHECK(closure.left == Approx(120));
+  // What any machine may leave at a thermometer counts for nothing.
+  CHECK(closure_of_heat(seen, held(2.9, 3, 0, 0), held(2.9, 1, 0, 100), {}).share == Approx(1));
+}
+
 TEST_CASE("an account that gains nothing closes nothing") {
   CHECK(closure_of(two_channels(), held(3, 3, 0, 0), held(3, 3, -5, 0)).share == 0);
 }

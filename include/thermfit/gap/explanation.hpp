@@ -94,7 +94,8 @@ inline std::vector<Screened> finalists(const std::vector<Screened>& screened, st
 }
 
 /// Refits every one of `chosen` on top of `kept` effects: a few steps for all, then to the end for the `to_the_end`
-/// that have come furthest and the few whose next step, taken for the held-out batches, promises most.
+/// that have come furthest and the half as many whose next step, taken for the held-out batches, promises most; none
+/// that promises e^20 times less than the best.
 inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector<Screened>& chosen,
                                        const std::vector<ThermalNetwork::AddedEffect>& kept, const MapFit& base,
                                        const MapFitOptions& options, std::size_t to_the_end = 5) {
@@ -115,10 +116,15 @@ inline std::vector<Explanation> refits(const Inquiry& inquiry, const std::vector
     return figures[std::min(count, figures.size()) - 1];
   };
   const double reached = of_the_best(to_the_end, [](const Explanation& one) { return one.fit.log_evidence; });
-  const double promised = of_the_best(3, [](const Explanation& one) { return one.held.log_score; });
+  const double promised = to_the_end < 2
+                              ? INFINITY
+                              : of_the_best(to_the_end / 2, [](const Explanation& one) { return one.held.log_score; });
+  const double hopeless =
+      of_the_best(1, [](const Explanation& one) { return one.held.log_score; }) - 20 / evidence_power;
   in_parallel(chosen.size(), inquiry.threads, [&](std::size_t i) {
     if (result[i].fit.converged) return;
     if (result[i].fit.log_evidence < reached && result[i].held.log_score < promised) return;
+    if (result[i].held.log_score < hopeless) return;
     const Vector start = result[i].fit.t;
     const std::vector<ResidualNoise> noise = result[i].fit.noise;
     MapFitOptions onward = options;

@@ -71,43 +71,57 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
   result.calibrated = explained_by(inquiry, {}, {}, {}, thorough);
 
   const Index own = result.calibrated.fit.t.size();
-  say("screening " + std::to_string(candidates.size()) + " candidates", 0.1);
   MapFitOptions refit;
   refit.tolerance = options.tolerance;
   refit.most_iterations = options.most_iterations;
   refit.fit_trust = true;
-  refit.trust = result.calibrated.fit.trust;
-  {
-    const ScreeningBase base(result.seen, result.calibrated.fit, library, result.machine.effects.size());
-    result.screened = screen(base, library, candidates, options.threads);
-  }
-  const std::vector<Screened> chosen = finalists(result.screened, options.strongest, 5, 0.06);
-  say("refitting " + std::to_string(chosen.size()) + " finalists", 0.35);
-  result.single = refits(inquiry, chosen, {}, result.calibrated.fit, refit);
-  detail::best_first(result.single);
-
-  if (!result.single.empty()) {
-    // Second starts, from the means of the priors, where the leader leaves much: calibration may have settled in the
-    // wrong valley.
-    say("trying other starts and the places beside", 0.6);
-    const bool open = excess_of(misfit_of(result.seen, result.single.front().held.residual)) > 1;
-    std::vector<Explanation> again(open ? std::min(options.restarted, result.single.size()) : 0);
-    in_parallel(again.size(), options.threads,
-                [&](std::size_t i) { again[i] = explained_by(inquiry, {result.single[i].effects[0]}, {}, {}, refit); });
-    for (std::size_t i = 0; i < again.size(); ++i)
-      if (again[i].fit.log_evidence > result.single[i].fit.log_evidence) result.single[i] = std::move(again[i]);
-    detail::best_first(result.single);
-    detail::PlaceWalk(inquiry, result.screened, own, result.single, 0, refit).run(options.most_steps);
-    // The effects dropped again: what a better valley of the calibration gains is not theirs.
-    std::vector<Explanation> dropped(std::min<std::size_t>(3, result.single.size()));
+  // Calibration alone from where the best account of every effect has left it: what a better valley gains is no
+  // effect's. Whether it was better by more than `worth` nats.
+  const auto drop_effects = [&](double worth) {
+    std::vector<const Explanation*> best;
+    for (const Explanation& one : result.single)
+      if (std::none_of(best.begin(), best.end(),
+                       [&](const Explanation* other) { return other->effects[0].effect == one.effects[0].effect; }))
+        best.push_back(&one);
+    std::vector<Explanation> dropped(best.size());
     in_parallel(dropped.size(), options.threads, [&](std::size_t i) {
-      const MapFit& fit = result.single[result.single.size() * i / dropped.size()].fit;
       MapFitOptions onward = thorough;
-      onward.trust = fit.trust;
-      dropped[i] = explained_by(inquiry, {}, fit.t.head(own), fit.noise, onward);
+      onward.trust = best[i]->fit.trust;
+      dropped[i] = explained_by(inquiry, {}, best[i]->fit.t.head(own), best[i]->fit.noise, onward);
     });
+    const double before = result.calibrated.fit.log_evidence;
     for (Explanation& one : dropped)
       if (one.fit.log_evidence > result.calibrated.fit.log_evidence) result.calibrated = std::move(one);
+    return result.calibrated.fit.log_evidence > before + worth;
+  };
+  for (bool again = true, first = true; again; first = false) {
+    say("screening " + std::to_string(candidates.size()) + " candidates", first ? 0.1 : 0.5);
+    refit.trust = result.calibrated.fit.trust;
+    {
+      const ScreeningBase base(result.seen, result.calibrated.fit, library, result.machine.effects.size());
+      result.screened = screen(base, library, candidates, options.threads);
+    }
+    const std::vector<Screened> chosen = finalists(result.screened, options.strongest, 5, 0.06);
+    say("refitting " + std::to_string(chosen.size()) + " finalists", first ? 0.25 : 0.55);
+    for (Explanation& one : refits(inquiry, chosen, {}, result.calibrated.fit, refit))
+      detail::keep_better(result.single, std::move(one));
+    if (first && !result.single.empty()) {
+      // Second starts, from the means of the priors, where the leader leaves much.
+      say("trying other starts", 0.4);
+      const bool open = excess_of(misfit_of(result.seen, result.single.front().held.residual)) > 1;
+      std::vector<Explanation> restarted(open ? std::min(options.restarted, result.single.size()) : 0);
+      in_parallel(restarted.size(), options.threads, [&](std::size_t i) {
+        restarted[i] = explained_by(inquiry, {result.single[i].effects[0]}, {}, {}, refit);
+      });
+      for (Explanation& one : restarted) detail::keep_better(result.single, std::move(one));
+    }
+    // From a better valley the effects look different: once more.
+    again = drop_effects(5) && first;
+  }
+  if (!result.single.empty()) {
+    say("trying the places beside", 0.6);
+    detail::PlaceWalk(inquiry, result.screened, own, result.single, 0, refit).run(options.most_steps);
+    drop_effects(0);
   }
 
   // A second effect on top of a first that is worth its name: what promises more than the number of candidates accounts

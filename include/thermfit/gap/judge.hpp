@@ -45,13 +45,26 @@ inline std::vector<Estimate> estimates(const Inquiry& inquiry, const Explanation
   return result;
 }
 
-inline Grounds grounds_of(const Investigation& found, const Explanation& nearest) {
+/// What `account` closes of what `before` leaves.
+inline Closure closure_by(const Inquiry& inquiry, const Explanation& before, const Explanation& account,
+                          const JudgingOptions& options) {
+  const bool moves_heat =
+      std::any_of(account.effects.begin(), account.effects.end(), [&](const ThermalNetwork::AddedEffect& one) {
+        const Stage stage = inquiry.library.at(one.effect).stage();
+        return stage != Stage::expansion && stage != Stage::measurement;
+      });
+  return moves_heat ? closure_of_heat(inquiry.seen, before.held, account.held, options)
+                    : closure_of(inquiry.seen, before.held, account.held);
+}
+
+inline Grounds grounds_of(const Inquiry& inquiry, const Investigation& found, const Explanation& nearest,
+                          const JudgingOptions& options) {
   Grounds result;
   result.candidates = found.screened.size();
   result.gain_nats = nearest.fit.log_evidence - found.calibrated.fit.log_evidence;
   for (const ThermalNetwork::AddedEffect& one : nearest.effects)
     result.nearest.push_back({one.effect, one.location, one.driver, 0});
-  const Closure closure = closure_of(found.seen, found.calibrated.held, nearest.held);
+  const Closure closure = closure_by(inquiry, found.calibrated, nearest, options);
   result.closes = closure.share;
   result.leaves = closure.left;
   return result;
@@ -68,11 +81,11 @@ inline double alone(const std::vector<Explanation>& single, const ThermalNetwork
 
 /// Probability that the best account of two is right about its second effect: it must gain more than the search and the
 /// form of the first one's law account for, and close what the first leaves as the first is asked to close the gap.
-inline double probability_of_second(const Investigation& found, const JudgingOptions& options) {
+inline double probability_of_second(const Inquiry& inquiry, const Investigation& found, const JudgingOptions& options) {
   const Explanation &single = found.single.front(), &pair = found.several.front();
   const double gained = plausibility(pair) - plausibility(single) - price_of_search(found.screened.size()) -
                         options.law_tolerance * (plausibility(single) - plausibility(found.calibrated));
-  const Closure closure = closure_of(found.seen, single.held, pair.held);
+  const Closure closure = closure_by(inquiry, single, pair, options);
   return logistic(gained) * probability_known(closure.share, closure.left, options);
 }
 
@@ -155,7 +168,7 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   Judgement result;
   result.best = result.nearest = &found.calibrated;
   result.grounds.candidates = found.screened.size();
-  if (!found.single.empty()) result.grounds = detail::grounds_of(found, found.single.front());
+  if (!found.single.empty()) result.grounds = detail::grounds_of(inquiry, found, found.single.front(), options);
   const bool real = gap_is_real(found.seen, found.calibrated.held.residual, options);
   if (!found.single.empty())
     result.odds =
@@ -169,11 +182,11 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
   }
   if (found.single.empty()) return result;
 
-  const double second = found.several.empty() ? 0 : detail::probability_of_second(found, options);
+  const double second = found.several.empty() ? 0 : detail::probability_of_second(inquiry, found, options);
   const bool two = second > 0.5;
   const std::vector<Explanation>& accounts = two ? found.several : found.single;
   result.nearest = &accounts.front();
-  result.grounds = detail::grounds_of(found, accounts.front());
+  result.grounds = detail::grounds_of(inquiry, found, accounts.front(), options);
   const double known = probability_known(result.grounds.closes, result.grounds.leaves, options) * logistic(result.odds);
   const std::vector<double> weight = probabilities(accounts);
   if (known < 0.5) return result;

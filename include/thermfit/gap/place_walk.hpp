@@ -18,6 +18,18 @@ inline void best_first(std::vector<Explanation>& explanations) {
                    [](const Explanation& a, const Explanation& b) { return plausibility(a) > plausibility(b); });
 }
 
+/// Adds an account of one effect, most plausible first; of two with the same effect at the same place the better stays.
+inline void keep_better(std::vector<Explanation>& accounts, Explanation&& account) {
+  const auto known = std::find_if(accounts.begin(), accounts.end(), [&](const Explanation& one) {
+    return same_place(one.effects[0], account.effects[0]);
+  });
+  if (known == accounts.end())
+    accounts.push_back(std::move(account));
+  else if (plausibility(account) > plausibility(*known))
+    *known = std::move(account);
+  best_first(accounts);
+}
+
 /// Walks from place to place: the catalogue's list of places is coarse.
 class PlaceWalk {
  public:

@@ -59,14 +59,36 @@ inline Closure closure_of(const MachineRecord& seen, const HeldOut& before, cons
   return result;
 }
 
+/// Whether this is more than a right machine would leave of a channel.
+inline bool is_real(const ObservedChannel& channel, double misfit, const JudgingOptions& options) {
+  return misfit > (channel.displacement ? options.real_from_displacement : options.real_from_temperature);
+}
+
 /// Whether calibration leaves what no right machine would.
 inline bool gap_is_real(const MachineRecord& seen, const ChannelResiduals& calibrated, const JudgingOptions& options) {
   const Vector misfit = misfit_of(seen, calibrated);
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
-    if (misfit(static_cast<Index>(c)) >
-        (seen.channels[c].displacement ? options.real_from_displacement : options.real_from_temperature))
-      return true;
+    if (is_real(seen.channels[c], misfit(static_cast<Index>(c)), options)) return true;
   return false;
+}
+
+/// The same for an account of how heat moves through the machine, which must also close what is really open (
+/// gap_is_real), wherever that is: the worse of both counts. Channels with a real gap weigh by it.
+inline Closure closure_of_heat(const MachineRecord& seen, const HeldOut& before, const HeldOut& after,
+                               const JudgingOptions& options) {
+  Closure result = closure_of(seen, before, after);
+  const Vector from = misfit_of(seen, before.residual), to = misfit_of(seen, after.residual);
+  double excess = 0, share = 0, left = 0;
+  for (std::size_t k = 0; k < seen.channels.size(); ++k) {
+    const Index c = static_cast<Index>(k);
+    if (!is_real(seen.channels[k], from(c), options)) continue;
+    const double weight = from(c) - 1, remains = std::max(0.0, to(c) - 1);
+    excess += weight;
+    share += std::max(0.0, weight - remains);
+    left += weight * remains;
+  }
+  if (excess <= 0) return result;
+  return {std::min(result.share, share / excess), std::max(result.left, left / excess)};
 }
 
 /// Probability that what was found is the cause rather than the nearest thing in the catalogue to an unknown one.
