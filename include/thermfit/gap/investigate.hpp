@@ -115,8 +115,10 @@ inline Investigation investigate(const ThermalNetwork& network, const Campaign& 
       });
       for (Explanation& one : restarted) detail::keep_better(result.single, std::move(one));
     }
-    // From a better valley the effects look different: once more.
-    again = drop_effects(5) && first;
+    // From a valley that is better by a good part of what the leader gained, the effects look different: once more.
+    const double gain =
+        result.single.empty() ? 0 : result.single[0].fit.log_evidence - result.calibrated.fit.log_evidence;
+    again = drop_effects(std::max(5.0, 0.1 * gain)) && first;
   }
   if (!result.single.empty()) {
     say("trying the places beside", 0.6);
