@@ -1,6 +1,7 @@
 #include "thermfit/gap/posterior.hpp"
 
 #include "support/catch.hpp"
+#include "thermfit/gap/judge.hpp"
 
 using namespace thermfit;
 
@@ -71,4 +72,17 @@ TEST_CASE("a place off the list must be worth the nodes it could have taken") {
   walked.fit.log_evidence = 2 * std::log(16) / evidence_power;
   CHECK(plausibility(walked) > plausibility(listed));
   CHECK(probabilities({listed, walked})[1] > 0.5);
+}
+
+TEST_CASE("a machine is miscalibrated when calibration closes the gap, not when lumping leaves one") {
+  Investigation found;
+  found.seen = two_channels();
+  found.placed.residual = held(3, 1, 0, 0).residual;
+  found.calibrated.held = held(1, 1, 0, 0);
+  CHECK(verdict_of_calibration(found, {}) == Verdict::miscalibration);
+  found.calibrated.held = held(2.9, 1, 0, 0);
+  CHECK(verdict_of_calibration(found, {}) == Verdict::none);
+  found.placed.residual = held(1.2, 1, 0, 0).residual;
+  found.calibrated.held = held(1, 1, 0, 0);
+  CHECK(verdict_of_calibration(found, {}) == Verdict::none);
 }

@@ -158,6 +158,17 @@ inline bool name_offset(const Inquiry& inquiry, const Investigation& found, Judg
 
 }  // namespace detail
 
+/// `none` or `miscalibration`, where there is no effect: calibration was needed when it closes most of what is left
+/// once the sensors sit where they sit. What lumping leaves, it does not.
+inline Verdict verdict_of_calibration(const Investigation& found, const JudgingOptions& options) {
+  const ChannelResiduals& calibrated = found.calibrated.held.residual;
+  const double placed =
+      excess_of(misfit_of(found.seen, found.placed.residual.empty() ? calibrated : found.placed.residual));
+  const double left = excess_of(misfit_of(found.seen, calibrated));
+  const bool needed = placed > options.least_excess && left < (1 - options.calibration_helps) * placed;
+  return needed ? Verdict::miscalibration : Verdict::none;
+}
+
 /// From what was tried to a verdict.
 ///
 /// A gap is real when some channel leaves on held-out batches far more than a right machine would, or when an effect
@@ -175,9 +186,7 @@ inline Judgement judge(const Inquiry& inquiry, const Investigation& found, const
         plausibility(found.single[0]) - plausibility(found.calibrated) - price_of_search(found.screened.size());
   if (!real && result.odds < 0) {
     if (detail::name_offset(inquiry, found, result)) return result;
-    const double placed = excess_of(
-        misfit_of(found.seen, found.placed.residual.empty() ? found.calibrated.held.residual : found.placed.residual));
-    result.verdict = placed <= options.least_excess ? Verdict::none : Verdict::miscalibration;
+    result.verdict = verdict_of_calibration(found, options);
     return result;
   }
   if (found.single.empty()) return result;

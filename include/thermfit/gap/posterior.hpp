@@ -15,12 +15,13 @@ struct JudgingOptions {
   /// Misfit, (rms / expected)^2, beyond which a gap is real: of a temperature, where the place of the thermometer
   /// within its part counts, and of a displacement, which adds up all parts.
   double real_from_temperature = 9, real_from_displacement = 2;
-  double least_excess = 1;      ///< below it, summed over channels, sensors only had to be placed
-  double known_by_share = 3;    ///< log odds that the cause is known: this times the share that it closes …
-  double known_by_left = 1.6;   ///< … less this times log(1 + what it leaves)
-  double beyond_doubt = 7;      ///< log odds of an effect (a thousand to one) that need no gap to be seen shrinking
-  double law_tolerance = 0.05;  ///< share of its evidence that the form of a law may be short of, no second effect
-  double listed = 0.05;         ///< rivals above this probability are listed
+  double least_excess = 1;         ///< below it, summed over channels, sensors only had to be placed
+  double calibration_helps = 0.5;  ///< share of it that calibration must close, or none was needed
+  double known_by_share = 3;       ///< log odds that the cause is known: this times the share that it closes …
+  double known_by_left = 1.6;      ///< … less this times log(1 + what it leaves)
+  double beyond_doubt = 7;         ///< log odds of an effect (a thousand to one) that need no gap to be seen shrinking
+  double law_tolerance = 0.05;     ///< share of its evidence that the form of a law may be short of, no second effect
+  double listed = 0.05;            ///< rivals above this probability are listed
 };
 
 inline double logistic(double odds) { return 1 / (1 + std::exp(-odds)); }

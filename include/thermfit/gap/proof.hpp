@@ -61,7 +61,7 @@ inline void demand_proof(Judgement& judgement, StageResiduals& stages, const Inv
   judgement.best = &found.calibrated;
   stages.with_effect = stages.calibrated;
   const bool real = harms || gap_is_real(found.seen, found.calibrated.held.residual, options);
-  judgement.verdict = real ? Verdict::unknown : Verdict::miscalibration;
+  judgement.verdict = real ? Verdict::unknown : verdict_of_calibration(found, options);
 }
 
 }  // namespace thermfit
