@@ -78,7 +78,6 @@ inline NextExperiment next_experiment(const std::vector<FittedRival>& rivals, co
   for (const FittedRival& one : rivals) result.separates.push_back(one.name);
   result.confusion_before = std::clamp(b.probability / std::max(a.probability + b.probability, 1e-9), 1e-6, .5);
   const double reached = std::pow(2 * detail::normal_quantile(result.confusion_before), 2);
-  const Index n = calibrated.t.size();
   const Matrix information = calibrated.posterior_information();
   const Schedule* best = nullptr;
   std::vector<Schedule> menu = experiment_menu(calibrated.prior, seen);
