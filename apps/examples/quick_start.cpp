@@ -1,7 +1,7 @@
 // From batches to models and their robustness, in one page: quick_start data/vcenter55/*.csv
 #include <cstdio>
 
-#include "thermfit/io/csv_reader.hpp"
+#include "thermfit/io/csv/reader.hpp"
 #include "thermfit/thermfit.hpp"
 
 int main(int count, char** paths) try {

@@ -8,7 +8,7 @@
 #include "cli/arguments.hpp"
 #include "cli/console.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
-#include "thermfit/io/csv_reader.hpp"
+#include "thermfit/io/csv/reader.hpp"
 
 namespace thermfit::cli {
 

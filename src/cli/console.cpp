@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "thermfit/error.hpp"
-#include "thermfit/io/atomic_file.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
 
 namespace thermfit::cli {
 

@@ -2,10 +2,10 @@
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
 #include "report/calibration_report.hpp"
+#include "thermfit/calibration/start_tolerance.hpp"
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/gap/start_share.hpp"
-#include "thermfit/io/atomic_file.hpp"
-#include "thermfit/io/machine_json.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
+#include "thermfit/io/json/machine.hpp"
 
 namespace thermfit::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include "cli/campaign_options.hpp"
 #include "commands/commands.hpp"
 #include "report/check_report.hpp"
-#include "thermfit/batch/findings.hpp"
+#include "thermfit/findings/findings.hpp"
 
 namespace thermfit::cli {
 namespace {

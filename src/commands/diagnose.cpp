@@ -3,12 +3,12 @@
 #include "cli/campaign_options.hpp"
 #include "commands/commands.hpp"
 #include "report/diagnosis_report.hpp"
+#include "thermfit/diagnosis/elaborate.hpp"
+#include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/gap/elaborate.hpp"
-#include "thermfit/gap/paired.hpp"
-#include "thermfit/io/atomic_file.hpp"
-#include "thermfit/io/diagnosis_json.hpp"
-#include "thermfit/io/machine_json.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
+#include "thermfit/io/json/diagnosis.hpp"
+#include "thermfit/io/json/machine.hpp"
 
 namespace thermfit::cli {
 namespace {

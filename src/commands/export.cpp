@@ -4,7 +4,7 @@
 #include "cli/compensation_options.hpp"
 #include "commands/commands.hpp"
 #include "export/source_text.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "report/model_report.hpp"
 #include "thermfit/fit/jackknife.hpp"
 #include "thermfit/fit/train.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/select/correlation.hpp"
 #include "thermfit/select/fcgr.hpp"

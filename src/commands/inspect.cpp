@@ -2,7 +2,7 @@
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "report/model_report.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {
 namespace {

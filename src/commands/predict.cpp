@@ -4,8 +4,8 @@
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "commands/fit_options.hpp"
-#include "thermfit/io/csv_writer.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/csv/writer.hpp"
+#include "thermfit/io/json/model.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {

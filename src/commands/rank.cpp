@@ -2,7 +2,7 @@
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "commands/fit_options.hpp"
-#include "thermfit/io/json_node.hpp"
+#include "thermfit/io/json/node.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/select/correlation.hpp"
 #include "thermfit/select/fcgr.hpp"

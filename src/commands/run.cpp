@@ -5,7 +5,7 @@
 #include "cli/line_source.hpp"
 #include "commands/commands.hpp"
 #include "run/live_compensation.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {
 namespace {

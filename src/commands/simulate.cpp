@@ -7,9 +7,9 @@
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/io/atomic_file.hpp"
-#include "thermfit/io/csv_writer.hpp"
-#include "thermfit/io/machine_json.hpp"
+#include "thermfit/io/csv/writer.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
+#include "thermfit/io/json/machine.hpp"
 
 namespace thermfit::cli {
 namespace {
@@ -57,8 +57,7 @@ std::string with_batch_column(const std::string& text, const std::string& batch,
   std::string result;
   for (std::size_t begin = 0, line = 0; begin < text.size(); ++line) {
     const std::size_t end = text.find('\n', begin) + 1;
-    if (line > 0 || first)
-      result += (line == 0 ? "batch" : csv_field(batch)) + ',' + text.substr(begin, end - begin);
+    if (line > 0 || first) result += (line == 0 ? "batch" : csv_field(batch)) + ',' + text.substr(begin, end - begin);
     begin = end;
   }
   return result;

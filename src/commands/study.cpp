@@ -4,7 +4,7 @@
 #include "commands/commands.hpp"
 #include "commands/fit_options.hpp"
 #include "report/study_report.hpp"
-#include "thermfit/io/campaign_json.hpp"
+#include "thermfit/io/json/campaign.hpp"
 
 namespace thermfit::cli {
 namespace {

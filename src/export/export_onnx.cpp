@@ -2,7 +2,7 @@
 
 #include "export/export.hpp"
 #include "export/source_text.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 
 /// ONNX is a protocol buffer; the few messages of a linear model are written by hand. Field numbers are those of
 /// onnx.proto (IR version 8): https://github.com/onnx/onnx/blob/main/onnx/onnx.proto

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "thermfit/error.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {

@@ -15,7 +15,9 @@ using Json = nlohmann::ordered_json;
 
 const Parameter& parameter(const Calibration& calibration, std::size_t j) { return calibration.fit.parameters[j]; }
 
-double coordinate(const Calibration& calibration, std::size_t j) { return calibration.fit.t(static_cast<Index>(j)); }
+double coordinate(const Calibration& calibration, std::size_t j) {
+  return calibration.fit.coordinates(static_cast<Index>(j));
+}
 
 double value(const Calibration& calibration, std::size_t j) {
   return parameter(calibration, j).value(coordinate(calibration, j));

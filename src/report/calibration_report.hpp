@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/console.hpp"
-#include "thermfit/gap/calibration.hpp"
+#include "thermfit/calibration/calibrate.hpp"
 
 namespace thermfit::cli {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/table.hpp"
-#include "thermfit/batch/series_scale.hpp"
+#include "thermfit/findings/series_scale.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 

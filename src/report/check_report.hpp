@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
-#include "thermfit/batch/finding.hpp"
+#include "thermfit/findings/finding.hpp"
 
 namespace thermfit::cli {
 

@@ -230,7 +230,7 @@ std::string remaining_text(const Diagnosis& diagnosis) {
 std::string gap_table(const Diagnosis& diagnosis) {
   Table table({"gap, rms", "as simulated", "calibrated", "with effect", "noise", "unit"});
   const bool named = !diagnosis.effects.empty();
-  const auto add = [&](const std::string& name, const StagedGap& rms, const std::string& unit) {
+  const auto add = [&](const std::string& name, const GapLevels& rms, const std::string& unit) {
     table.add({name, size_text(rms.as_simulated), size_text(rms.calibrated), named ? size_text(rms.with_effect) : "-",
                size_text(rms.noise), unit});
   };

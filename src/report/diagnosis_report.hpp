@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "thermfit/gap/diagnosis.hpp"
+#include "thermfit/diagnosis/diagnosis.hpp"
 
 namespace thermfit::cli {
 

@@ -10,7 +10,7 @@
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/batch/campaign_card.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
-#include "thermfit/io/json_node.hpp"
+#include "thermfit/io/json/node.hpp"
 #include "thermfit/robustness/study.hpp"
 
 namespace thermfit::cli {

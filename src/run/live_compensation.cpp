@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "thermfit/error.hpp"
-#include "thermfit/io/csv_field.hpp"
-#include "thermfit/io/csv_header.hpp"
+#include "thermfit/io/csv/field.hpp"
+#include "thermfit/io/csv/header.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {

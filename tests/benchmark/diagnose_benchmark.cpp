@@ -12,7 +12,7 @@
 
 #include "cli/command.hpp"
 #include "cli/table.hpp"
-#include "thermfit/io/atomic_file.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
 #include "thermfit/number.hpp"
 
 namespace {

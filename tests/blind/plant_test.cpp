@@ -91,6 +91,6 @@ TEST_CASE("the generator includes nothing of the diagnosed network") {
     for (std::string line; std::getline(file, line);)
       if (line.find("#include \"thermfit/") == 0)
         CHECK((line.find("thermfit/number.hpp") != std::string::npos ||
-               line.find("thermfit/io/atomic_file.hpp") != std::string::npos));
+               line.find("thermfit/io/files/atomic_file.hpp") != std::string::npos));
   }
 }

@@ -1,6 +1,6 @@
 /// Writes the example model of tests/controller to the file named.
 #include "controller/example_model.hpp"
-#include "thermfit/io/model_json.hpp"
+#include "thermfit/io/json/model.hpp"
 
 int main(int count, char** words) {
   if (count != 2) return 2;

@@ -4,7 +4,7 @@
 #include "support/shared_data.hpp"
 #include "thermfit/fit/fit.hpp"
 #include "thermfit/fit/jackknife.hpp"
-#include "thermfit/io/json_node.hpp"
+#include "thermfit/io/json/node.hpp"
 
 using namespace thermfit;
 using json = thermfit::Json;

@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "thermfit/batch/findings.hpp"
-#include "thermfit/io/csv_reader.hpp"
-#include "thermfit/io/csv_writer.hpp"
+#include "thermfit/findings/findings.hpp"
+#include "thermfit/io/csv/reader.hpp"
+#include "thermfit/io/csv/writer.hpp"
 
 #ifndef THERMFIT_LIBFUZZER
 #include "replay.hpp"

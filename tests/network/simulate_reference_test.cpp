@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "support/catch.hpp"
-#include "thermfit/io/csv_reader.hpp"
-#include "thermfit/io/machine_json.hpp"
+#include "thermfit/io/csv/reader.hpp"
+#include "thermfit/io/json/machine.hpp"
 #include "thermfit/network/simulate.hpp"
 
 using namespace thermfit;

@@ -8,7 +8,7 @@
 #include "cli/command.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
-#include "thermfit/io/csv_reader.hpp"
+#include "thermfit/io/csv/reader.hpp"
 
 /// A board with two heaters and two thermometers as a simulator would describe it before it has seen a measurement: one
 /// node a heater, numbers from the literature (capacity 6.2 J/K, .0417 W/K to the room, 3.2 W), no link, no lag.

@@ -2,7 +2,7 @@
 
 #include "support/catch.hpp"
 #include "support/shared_data.hpp"
-#include "thermfit/io/csv_reader.hpp"
+#include "thermfit/io/csv/reader.hpp"
 #include "thermfit/number.hpp"
 
 using namespace thermfit;

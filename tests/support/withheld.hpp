@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "thermfit/io/csv_reader.hpp"
+#include "thermfit/io/csv/reader.hpp"
 
 /// The measured ("real") or simulated ("sim") batches of a case of data/withheld, which is part of the project.
 inline thermfit::Campaign withheld_campaign(const std::string& name, const std::string& side) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "thermfit/effects/effect.hpp"
+#include "thermfit/network/effect.hpp"
 
 namespace thermfit {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "thermfit/fit/linear_fit.hpp"
-#include "thermfit/model/quantiles.hpp"
+#include "thermfit/statistics/quantiles.hpp"
 
 namespace thermfit {
 

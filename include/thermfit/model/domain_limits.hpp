@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "thermfit/model/quantiles.hpp"
+#include "thermfit/statistics/quantiles.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {

@@ -6,7 +6,7 @@
 
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/error.hpp"
-#include "thermfit/network/smooth_level.hpp"
+#include "thermfit/network/impl/smooth_level.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "thermfit/effects/effect.hpp"
+#include "thermfit/network/effect.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit {

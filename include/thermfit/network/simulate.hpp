@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "thermfit/effects/effect.hpp"
+#include "thermfit/network/effect.hpp"
 #include "thermfit/network/excitation.hpp"
-#include "thermfit/network/integrator.hpp"
+#include "thermfit/network/impl/integrator.hpp"
+#include "thermfit/network/impl/readings.hpp"
+#include "thermfit/network/impl/system_of.hpp"
+#include "thermfit/network/impl/time_grid.hpp"
 #include "thermfit/network/parameters.hpp"
-#include "thermfit/network/readings.hpp"
-#include "thermfit/network/system_of.hpp"
-#include "thermfit/network/time_grid.hpp"
 
 namespace thermfit {
 

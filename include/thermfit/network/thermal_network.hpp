@@ -79,7 +79,7 @@ struct ThermalNetwork {
     double sensor_response = 0.05;   ///< of the time constant of the sensor's node
     double start_share = 0;          ///< of Initial::share; 0: not moved
   };
-  /// An effect of the catalogue that was added: its law is looked up by name, see effects/effect.hpp.
+  /// An effect of the catalogue that was added: its law is looked up by name, see network/effect.hpp.
   struct AddedEffect {
     std::string effect;
     std::string location;

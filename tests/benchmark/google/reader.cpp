@@ -1,15 +1,16 @@
 // Reading a file of 100,000 rows x (time, ten temperatures, one error): whole batches with their digest, and moments
 // alone in constant memory. bytes_per_second is text read.
+#include "thermfit/io/csv/reader.hpp"
+
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
 #include <string>
 
 #include "support/thermal_rows.hpp"
-#include "thermfit/io/atomic_file.hpp"
-#include "thermfit/io/batch_digest.hpp"
-#include "thermfit/io/csv_moments.hpp"
-#include "thermfit/io/csv_reader.hpp"
+#include "thermfit/io/csv/moments.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
+#include "thermfit/io/files/batch_digest.hpp"
 #include "thermfit/number.hpp"
 
 using namespace thermfit;

@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/io/csv_reader.hpp"
-#include "thermfit/io/machine_json.hpp"
+#include "thermfit/io/csv/reader.hpp"
+#include "thermfit/io/json/machine.hpp"
 #include "thermfit/network/simulate.hpp"
 
 namespace blind {

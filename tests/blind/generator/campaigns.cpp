@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "case.hpp"
-#include "thermfit/io/atomic_file.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
 
 namespace {
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "thermfit/diagnosis/judgement/shrink.hpp"
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/gap/shrink.hpp"
-#include "thermfit/io/csv_reader.hpp"
-#include "thermfit/io/machine_json.hpp"
+#include "thermfit/io/csv/reader.hpp"
+#include "thermfit/io/json/machine.hpp"
 #include "thermfit/network/simulate.hpp"
 
 namespace blind {

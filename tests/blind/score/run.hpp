@@ -10,7 +10,7 @@
 
 #include "fresh.hpp"
 #include "mark.hpp"
-#include "thermfit/io/atomic_file.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
 #include "thermfit/number.hpp"
 
 namespace blind {

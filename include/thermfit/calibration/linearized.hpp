@@ -1,0 +1,146 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "thermfit/calibration/machine_record.hpp"
+#include "thermfit/network/parameters.hpp"
+#include "thermfit/network/simulate.hpp"
+#include "thermfit/statistics/residual_noise.hpp"
+
+namespace thermfit {
+
+/// Measured minus simulated, by channel and batch; NaN where nothing was measured.
+using ChannelResiduals = std::vector<SeriesByBatch>;
+
+inline ChannelResiduals residuals_of(const MachineRecord& seen, const std::vector<Simulation>& simulated) {
+  ChannelResiduals result(seen.channels.size());
+  for (std::size_t c = 0; c < seen.channels.size(); ++c)
+    for (std::size_t b = 0; b < simulated.size(); ++b)
+      result[c].push_back(seen.channels[c].measured[b] - simulated[b].channels.col(seen.channels[c].column));
+  return result;
+}
+
+/// A model at a point, whitened: the residual and its derivatives with respect to the working coordinates t, of which a
+/// channel keeps only the columns that touch it (an offset touches one sensor).
+struct Linearized {
+  struct Block {
+    Matrix jacobian;  ///< samples x active columns of d(simulated)/dt
+    Vector residual;
+  };
+  struct Channel {
+    std::vector<Index> active;
+    std::vector<Block> batches;
+  };
+  std::vector<Channel> channels;
+  Index parameters = 0;
+};
+
+/// One whitener for every channel and batch.
+inline std::vector<std::vector<Whitener>> whiteners_of(const MachineRecord& seen,
+                                                       const std::vector<ResidualNoise>& noise) {
+  std::vector<std::vector<Whitener>> result(seen.channels.size());
+  for (std::size_t c = 0; c < seen.channels.size(); ++c)
+    for (std::size_t b = 0; b < seen.batches(); ++b)
+      result[c].emplace_back(noise[c], seen.time_s[b], seen.channels[c].present[b]);
+  return result;
+}
+
+/// Whitens simulations that carry sensitivities. `slopes` is d(value)/dt of each parameter.
+inline Linearized linearized(const MachineRecord& seen, const std::vector<Simulation>& simulated, const Vector& slopes,
+                             const std::vector<std::vector<Whitener>>& whiteners) {
+  Linearized result;
+  result.parameters = slopes.size();
+  result.channels.resize(seen.channels.size());
+  for (std::size_t c = 0; c < seen.channels.size(); ++c) {
+    Linearized::Channel& channel = result.channels[c];
+    const Index column = seen.channels[c].column;
+    Vector largest = Vector::Zero(slopes.size());
+    for (const Simulation& one : simulated) {
+      const Index n = one.channels.rows();
+      largest = largest.cwiseMax(one.jacobian.middleRows(column * n, n).cwiseAbs().colwise().maxCoeff().transpose());
+    }
+    for (Index j = 0; j < slopes.size(); ++j)
+      if (largest(j) > 0) channel.active.push_back(j);
+    for (std::size_t b = 0; b < simulated.size(); ++b) {
+      const Simulation& one = simulated[b];
+      const Index n = one.channels.rows();
+      Linearized::Block block;
+      block.jacobian.resize(n, static_cast<Index>(channel.active.size()));
+      for (std::size_t a = 0; a < channel.active.size(); ++a) {
+        const Index j = channel.active[a];
+        block.jacobian.col(static_cast<Index>(a)) = slopes(j) * one.jacobian.col(j).segment(column * n, n);
+      }
+      block.residual = seen.channels[c].measured[b] - one.channels.col(column);
+      whiteners[c][b].apply(block.jacobian);
+      whiteners[c][b].apply(block.residual);
+      channel.batches.push_back(std::move(block));
+    }
+  }
+  return result;
+}
+
+/// Gauss-Newton normal equations: information J'J, score J'r, squares r'r.
+struct NormalEquations {
+  Matrix information;
+  Vector score;
+  double squares = 0;
+
+  explicit NormalEquations(Index parameters = 0)
+      : information(Matrix::Zero(parameters, parameters)), score(Vector::Zero(parameters)) {}
+
+  /// Adds equations that know only some of the parameters.
+  void add(const NormalEquations& part, const std::vector<Index>& active, double weight = 1) {
+    const Index n = static_cast<Index>(active.size());
+    for (Index j = 0; j < n; ++j) {
+      const Index to = active[static_cast<std::size_t>(j)];
+      score(to) += weight * part.score(j);
+      for (Index i = 0; i < n; ++i)
+        information(active[static_cast<std::size_t>(i)], to) += weight * part.information(i, j);
+    }
+    squares += weight * part.squares;
+  }
+  NormalEquations& operator-=(const NormalEquations& other) {
+    information -= other.information;
+    score -= other.score;
+    squares -= other.squares;
+    return *this;
+  }
+};
+
+inline NormalEquations normal_equations(const Linearized::Block& block) {
+  NormalEquations result(block.jacobian.cols());
+  result.squares = block.residual.squaredNorm();
+  if (block.jacobian.cols() == 0) return result;
+  result.information.template selfadjointView<Eigen::Lower>().rankUpdate(block.jacobian.transpose());
+  result.information.template triangularView<Eigen::StrictlyUpper>() = result.information.transpose();
+  result.score.noalias() = block.jacobian.transpose() * block.residual;
+  return result;
+}
+
+/// The equations of a campaign, summed over channels for each batch and over batches for each channel.
+struct SummedEquations {
+  std::vector<NormalEquations> by_batch;    ///< in all parameters
+  std::vector<NormalEquations> by_channel;  ///< in the channel's active parameters
+};
+
+inline SummedEquations summed_equations(const Linearized& model) {
+  SummedEquations result;
+  for (const Linearized::Channel& channel : model.channels) {
+    NormalEquations sum(static_cast<Index>(channel.active.size()));
+    for (std::size_t b = 0; b < channel.batches.size(); ++b) {
+      const NormalEquations part = normal_equations(channel.batches[b]);
+      if (result.by_batch.size() <= b) result.by_batch.emplace_back(model.parameters);
+      result.by_batch[b].add(part, channel.active);
+      sum.information += part.information;
+      sum.score += part.score;
+      sum.squares += part.squares;
+    }
+    result.by_channel.push_back(std::move(sum));
+  }
+  return result;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,106 @@
+#pragma once
+
+/// One channel of a paired campaign: its gap, what calibration explains of it, and how far a sample is to be trusted.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "thermfit/diagnosis/outputs/calibration_basis.hpp"
+
+namespace thermfit {
+
+/// All batches below each other.
+struct PairedChannel {
+  CalibrationBasis basis;   ///< grows by the columns of effects already found
+  Vector gap;               ///< measured minus simulated, less what is already explained
+  Matrix products;          ///< cross-products of both
+  double as_simulated = 0;  ///< rms
+  double calibrated = 0;    ///< rms on batches left out
+  double resolution = 0;    ///< what rounding of the readings adds
+  double noise = 0;         ///< of a single sample, from second differences of what calibration leaves
+  double correlation = 1;   ///< how many samples count as one, (1 + rho) / (1 - rho), at most 6
+  double evidence = 0;      ///< of calibration alone, nats
+};
+
+inline double rms_of(const Vector& values) {
+  return values.size() ? std::sqrt(values.squaredNorm() / static_cast<double>(values.size())) : 0;
+}
+
+/// Robust standard deviation of white noise in slowly varying series: median |second difference| / (.6745 sqrt 6).
+inline double white_noise(const PairedCampaign& campaign, const Vector& stack) {
+  std::vector<double> differences;
+  for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
+    const Vector values = campaign.part(stack, b);
+    for (Index k = 1; k + 1 < values.size(); ++k)
+      differences.push_back(std::abs(values(k + 1) - 2 * values(k) + values(k - 1)));
+  }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return *middle / (.6745 * std::sqrt(6.));
+}
+
+/// Lag-1 correlation of each batch's series around zero, 0 … .98.
+inline double lag_one_correlation(const PairedCampaign& campaign, const Vector& stack) {
+  double product = 0, square = 0;
+  for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
+    const Vector values = campaign.part(stack, b);
+    square += values.squaredNorm();
+    product += values.head(values.size() - 1).dot(values.tail(values.size() - 1));
+  }
+  return square > 0 ? std::min(std::max(product / square, 0.), .98) : 0;
+}
+
+/// Every batch predicted from the others: gap minus regressors times the coefficients fitted without it. With a single
+/// batch, the residual of the fit itself.
+inline Vector held_out_residual(const PairedCampaign& campaign, const Matrix& regressors, const Vector& gap,
+                                const Vector& prior_sd, double noise) {
+  const Matrix all = cross_products(regressors, gap);
+  Vector residual(gap.size());
+  for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
+    const Matrix own_regressors = campaign.part(regressors, b);
+    const Vector own_gap = campaign.part(gap, b);
+    Matrix others = all;
+    if (campaign.batches.size() > 1) others -= cross_products(own_regressors, own_gap);
+    campaign.part(residual, b) = own_gap - own_regressors * fit_with_prior(others, prior_sd, noise).coefficients;
+  }
+  return residual;
+}
+
+/// Evidence of regressors with their prior, nats: the level of the noise is profiled between what calibration leaves
+/// and the white part, and `correlation` samples count as one.
+struct Evidence {
+  double log = 0;
+  double noise = 0;  ///< weight of a sample at the best level
+};
+
+inline Evidence profiled_evidence(const PairedChannel& channel, const Matrix& products, const Vector& prior_sd) {
+  Evidence best{-1e300, 0};
+  const double spread = std::sqrt(channel.correlation);
+  const double counted = static_cast<double>(channel.gap.size()) / channel.correlation;
+  for (double level = std::max(channel.calibrated, channel.noise) + 1e-6;; level /= 1.5) {
+    const double floored = std::max(level, channel.noise);
+    const double log = log_evidence(products, counted, prior_sd, floored, spread);
+    if (log > best.log) best = {log, floored * spread};
+    if (level <= channel.noise || level < 1e-6) break;
+  }
+  return best;
+}
+
+/// Fits calibration alone to a channel, until the weight of a sample has settled.
+inline void judge_calibration(const PairedCampaign& campaign, PairedChannel& channel) {
+  channel.products = cross_products(channel.basis.regressors, channel.gap);
+  if (channel.calibrated == 0) channel.calibrated = .3 * rms_of(channel.gap) + 1e-6;
+  for (int round = 0; round < 3; ++round) {
+    const Vector left = held_out_residual(campaign, channel.basis.regressors, channel.gap, channel.basis.prior_sd,
+                                          channel.calibrated * std::sqrt(channel.correlation));
+    channel.calibrated = rms_of(left) + 1e-6;
+    channel.noise = std::max(white_noise(campaign, left), channel.resolution);
+    const double rho = lag_one_correlation(campaign, left);
+    channel.correlation = std::min((1 + rho) / (1 - rho), 6.);
+  }
+  channel.evidence = profiled_evidence(channel, channel.products, channel.basis.prior_sd).log;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/findings/finding.hpp"
+#include "thermfit/findings/series_scale.hpp"
+
+namespace thermfit {
+
+/// Time that repeats or goes back, and steps longer than three times the usual one (the median) and ten times the usual
+/// scatter of steps above it. More than eight gaps in a batch are told as one finding that counts them.
+inline std::vector<Finding> clock_findings(const Batch& batch) {
+  std::vector<Finding> back, gaps;
+  const Series clock(batch.time_s);
+  if (clock.size() < 3) return {};
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < clock.size(); ++i) steps.push_back(clock.values[i] - clock.values[i - 1]);
+  const double usual = median(steps);
+  std::vector<double> scatter;
+  for (const double step : steps) scatter.push_back(std::abs(step - usual));
+  const double limit = std::max(3 * usual, usual + 10 * median(scatter) / 0.6745);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i] <= 0)
+      back.push_back(
+          {FindingRule::time_back, "time", clock.rows[i + 1], clock.rows[i + 1], steps[i], 0, "s",
+           steps[i] == 0 ? "stands still: a row written twice?" : "goes back: runs joined, or a clock set?"});
+    else if (steps[i] > limit && usual > 0)
+      gaps.push_back({FindingRule::time_gap, "time", clock.rows[i], clock.rows[i + 1], steps[i], limit, "s",
+                      "rows are missing, the usual step is " + std::to_string(std::lround(usual)) + " s"});
+  }
+  if (gaps.size() > 8) {
+    Finding all = gaps.front();
+    all.last_row = gaps.back().last_row;
+    for (const Finding& gap : gaps) all.figure = std::max(all.figure, gap.figure);
+    all.note = std::to_string(gaps.size()) + " gaps, this is the longest step";
+    gaps.assign(1, all);
+  }
+  back.insert(back.end(), gaps.begin(), gaps.end());
+  return back;
+}
+
+/// Cells of a channel that hold no number.
+inline std::optional<Finding> missing_finding(const Eigen::Ref<const Vector>& column, const std::string& name) {
+  Index count = 0, first = 0, last = 0;
+  for (Index row = 0; row < column.size(); ++row) {
+    if (std::isfinite(column(row))) continue;
+    if (count++ == 0) first = row;
+    last = row;
+  }
+  if (count == 0) return std::nullopt;
+  return Finding{FindingRule::missing,       name, first,    last,
+                 static_cast<double>(count), 0,    "values", "--missing drop or hold decides what becomes of them"};
+}
+
+}  // namespace thermfit

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/QR>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/findings/finding.hpp"
+#include "thermfit/findings/series_scale.hpp"
+
+namespace thermfit {
+
+/// Temperatures that earlier ones give, as a straight line of one or a linear combination of all, to less than a
+/// quarter of what rounding alone leaves between independent readings: sqrt(sum (b_i r_i)^2 / 12) with resolutions r_i.
+/// Each such channel is told once. Ordinary collinearity of thermometers is no fault. Channels that move by less than
+/// eight steps of their resolution tell nothing.
+inline std::vector<Finding> redundancy_findings(const Batch& batch) {
+  std::vector<Finding> findings;
+  const Matrix& values = batch.temperatures.values;
+  if (!values.allFinite()) return findings;
+  const Index rows = values.rows();
+  std::vector<Index> used;
+  std::vector<double> resolutions;
+  // How far `column` is from what `columns` give: residual scatter over rounding floor.
+  const auto ratio = [&](Index column, double resolution, const std::vector<std::size_t>& chosen) {
+    const auto count = static_cast<Index>(chosen.size());
+    Matrix design(rows, count + 1);
+    design.col(0).setOnes();
+    for (Index i = 0; i < count; ++i) design.col(i + 1) = values.col(used[chosen[static_cast<std::size_t>(i)]]);
+    const Vector weights = design.colPivHouseholderQr().solve(values.col(column));
+    double floor = resolution * resolution;
+    for (Index i = 0; i < count; ++i)
+      floor += std::pow(weights(i + 1) * resolutions[chosen[static_cast<std::size_t>(i)]], 2);
+    const double scatter =
+        (values.col(column) - design * weights).squaredNorm() / static_cast<double>(rows - count - 1);
+    return std::sqrt(scatter / (floor / 12));
+  };
+  for (Index c = 0; c < values.cols(); ++c) {
+    const SeriesScale scale = series_scale(Series(values.col(c)));
+    if (scale.range() < 8 * scale.resolution || scale.range() == 0) continue;
+    const std::string& name = batch.temperatures.names[static_cast<std::size_t>(c)];
+    const auto add = [&](double figure, const std::string& note) {
+      findings.push_back({FindingRule::collinear, name, 0, rows - 1, figure, 0.25, "of rounding", note});
+    };
+    bool redundant = false;
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < used.size() && !redundant && rows >= 12; ++i) {
+      all.push_back(i);
+      const double figure = ratio(c, scale.resolution, {i});
+      redundant = figure < 0.25;
+      if (redundant)
+        add(figure, "the same as " + batch.temperatures.names[static_cast<std::size_t>(used[i])] + ": a copy?");
+    }
+    if (!redundant && all.size() > 1 && rows >= static_cast<Index>(all.size()) + 12) {
+      const double figure = ratio(c, scale.resolution, all);
+      redundant = figure < 0.25;
+      if (redundant) add(figure, "a combination of the points before it: computed?");
+    }
+    if (redundant) continue;
+    used.push_back(c);
+    resolutions.push_back(scale.resolution);
+  }
+  return findings;
+}
+
+}  // namespace thermfit

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/findings/finding.hpp"
+#include "thermfit/findings/series_scale.hpp"
+
+namespace thermfit {
+
+/// Rows in which a known input has another value than in the row before.
+inline std::vector<Index> switching_rows(const Channels& inputs) {
+  std::vector<Index> rows;
+  if (inputs.count() == 0) return rows;
+  for (Index row = 1; row < inputs.values.rows(); ++row)
+    if ((inputs.values.row(row).array() != inputs.values.row(row - 1).array()).any()) rows.push_back(row);
+  return rows;
+}
+
+namespace detail {
+
+/// Steps from one reading to the next that are no part of a smooth course: beyond the limit away from the steps around
+/// and four times as large as each of them. `step[i]` leads to reading i.
+inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, double limit) {
+  std::vector<std::size_t> found;
+  const auto step = [&](std::size_t i) { return values[i] - values[i - 1]; };
+  for (std::size_t i = 3; i + 2 < values.size(); ++i) {
+    std::array<double, 4> around{step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
+    std::sort(around.begin(), around.end());
+    const double trend = (around[1] + around[2]) / 2, largest = std::max(std::abs(around[0]), std::abs(around[3]));
+    if (std::abs(step(i) - trend) > limit && std::abs(step(i)) > 4 * largest) found.push_back(i);
+  }
+  return found;
+}
+
+}  // namespace detail
+
+/// Spikes and jumps of a series, in order of rows; `switching` holds rows in order.
+///
+/// A spike leaves the range of the two readings before and the two after by more than 8 times the noise (5 times the
+/// resolution, where that is more), and its neighbours' second differences have the opposite sign: a corner of the true
+/// course has not. A jump exceeds 12 times the noise (6 times the resolution) beside the local trend and is four times
+/// as large as the steps around it; a jump that is taken back within five rows is a spike too. Rows up to two after an
+/// input has switched, and the start of the batch, may jump.
+inline std::vector<Finding> transient_findings(const Series& series, const SeriesScale& scale,
+                                               const std::vector<Index>& switching, const std::string& name,
+                                               const std::string& unit) {
+  const std::vector<double>& x = series.values;
+  const double spike_limit = std::max(8 * scale.noise, 5 * scale.resolution);
+  const double jump_limit = std::max(12 * scale.noise, 6 * scale.resolution);
+  std::vector<Finding> findings;
+  const auto explained = [&](std::size_t i) {
+    const Index row = series.rows[i];
+    const auto at = std::upper_bound(switching.begin(), switching.end(), row);
+    return row > series.rows[i - 1] + 1 || (at != switching.begin() && row <= *std::prev(at) + 2);
+  };
+  const auto bend = [&](std::size_t i) { return x[i] - (x[i - 1] + x[i + 1]) / 2; };
+  std::vector<bool> spiked(x.size(), false);
+  for (std::size_t i = 2; i + 2 < x.size(); ++i) {
+    const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[i + 1], x[i + 2]});
+    const double beyond = std::max(x[i] - high, low - x[i]);
+    if (beyond <= spike_limit || explained(i)) continue;
+    const double sign = x[i] > high ? 1 : -1, size = sign * bend(i);
+    if (-sign * bend(i - 1) < size / 4 || -sign * bend(i + 1) < size / 4) continue;
+    spiked[i] = true;
+    findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[i], beyond, spike_limit, unit,
+                        "off the readings around it: contact, interference?"});
+  }
+  const std::vector<std::size_t> steps = detail::abrupt_steps(x, jump_limit);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const std::size_t i = steps[k];
+    const double size = x[i] - x[i - 1];
+    if (spiked[i] || spiked[i - 1]) continue;
+    if (k + 1 < steps.size() && steps[k + 1] - i <= 5) {
+      const double back = x[steps[k + 1]] - x[steps[k + 1] - 1];
+      if (size * back < 0 && std::abs(size + back) < 0.3 * std::abs(size)) {
+        findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[steps[k + 1] - 1], std::abs(size),
+                            jump_limit, unit, "off the readings around them: contact, interference?"});
+        ++k;
+        continue;
+      }
+    }
+    if (!explained(i))
+      findings.push_back({FindingRule::jump, name, series.rows[i - 1], series.rows[i], std::abs(size), jump_limit, unit,
+                          "a lasting step that no input explains: sensor moved, probe zeroed?"});
+  }
+  std::sort(findings.begin(), findings.end(),
+            [](const Finding& a, const Finding& b) { return a.first_row < b.first_row; });
+  return findings;
+}
+
+}  // namespace thermfit

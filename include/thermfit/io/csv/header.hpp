@@ -1,0 +1,163 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "thermfit/io/csv/dialect.hpp"
+#include "thermfit/io/problems.hpp"
+#include "thermfit/io/units.hpp"
+
+namespace thermfit {
+
+/// A column as the header names it.
+struct CsvColumn {
+  std::string name;          ///< without a unit in brackets
+  std::string title;         ///< as written
+  std::string unit;          ///< as written in brackets behind the name or in the unit row; empty when not told
+  std::size_t position = 0;  ///< of the title in its line, from 1
+
+  bool is_called(const std::string& text) const { return text == name || text == title; }
+};
+
+namespace detail {
+
+struct CsvHeader {
+  std::vector<CsvColumn> columns;
+  std::size_t line = 0;            ///< of the names; 0 when they were given
+  std::size_t content_lines = 0;   ///< lines it takes: names, unit row
+  bool empty_last_column = false;  ///< rows and header end in a separator
+};
+
+inline bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = byte < 0x80                   ? 1
+                               : byte >= 0xC2 && byte < 0xE0 ? 2
+                               : byte >= 0xE0 && byte < 0xF0 ? 3
+                               : byte >= 0xF0 && byte < 0xF5 ? 4
+                                                             : 0;
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k)
+      if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return false;
+    i += length;
+  }
+  return true;
+}
+
+/// `T1 [degC]` is column T1 in degC. Square brackets always hold a unit; round ones only one that is known.
+inline CsvColumn column_of(const CsvField& field) {
+  CsvColumn column{field.name(), {}, {}, field.column};
+  column.title = column.name;
+  const std::string_view title = column.title;
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const std::size_t begin = title.rfind(open);
+    if (begin == std::string_view::npos || begin == 0 || title.back() != close) continue;
+    const std::string_view unit = trim(title.substr(begin + 1, title.size() - begin - 2));
+    if (open == '(' && !find_unit(unit)) continue;
+    column.unit = unit;
+    column.name = trim(title.substr(0, begin));
+    break;
+  }
+  return column;
+}
+
+/// A line of units below the names: no cell is a number, at least one is a unit of temperature, length or time.
+inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::string>& units) {
+  units.clear();
+  bool known = false;
+  for (const CsvField& field : fields) {
+    std::string_view text = field.text;
+    if (parse_field(text, '.') || parse_field(text, ',')) return false;
+    if (text.size() > 1 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
+      text = trim(text.substr(1, text.size() - 2));
+    units.emplace_back(text == "-" ? std::string_view() : text);
+    known = known || find_unit(text).has_value();
+  }
+  return known;
+}
+
+inline CsvHeader names_given(const CsvOptions& options) {
+  CsvHeader header;
+  for (const std::string& name : options.columns) header.columns.push_back(column_of({name, 0, false}));
+  return header;
+}
+
+inline bool rows_end_in_separator(const CsvEvidence& evidence, char separator) {
+  std::vector<CsvField> fields;
+  for (std::size_t i = 1; i < evidence.lines.size(); ++i)
+    if (!split_line(evidence.lines[i].text, separator, fields) && !fields.back().text.empty()) return false;
+  return true;
+}
+
+inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, const std::string& name) {
+  CsvHeader header;
+  const auto& first = evidence.lines.front();
+  header.line = first.number;
+  header.content_lines = 1;
+  if (!is_utf8(first.text))
+    throw Error(place(name, first.number), "names that are not UTF-8", "text in UTF-8",
+                "convert: iconv -f WINDOWS-1252 -t UTF-8 FILE");
+  std::vector<CsvField> fields;
+  if (const auto broken = split_line(first.text, dialect.separator, fields))
+    throw Error(place(name, first.number, broken->column), broken->found, "", broken->remedy);
+  bool all_numbers = true;
+  for (const CsvField& field : fields) {
+    header.columns.push_back(column_of(field));
+    all_numbers = all_numbers && (is_missing(field.text) || parse_field(field.text, dialect.decimal_mark) ||
+                                  parse_date_time(field.text));
+  }
+  if (all_numbers)
+    throw Error(place(name, first.number), "numbers where the names of the columns should be", "a header line",
+                "add one, or name the columns: --columns NAME,NAME,…");
+  header.empty_last_column =
+      fields.size() > 1 && fields.back().text.empty() && rows_end_in_separator(evidence, dialect.separator);
+  if (header.empty_last_column) header.columns.pop_back();
+
+  std::vector<std::string> units;
+  if (evidence.lines.size() > 1 && !split_line(evidence.lines[1].text, dialect.separator, fields) &&
+      fields.size() == header.columns.size() + header.empty_last_column && is_unit_row(fields, units)) {
+    dialect.unit_row = true;
+    header.content_lines = 2;
+    for (std::size_t c = 0; c < header.columns.size(); ++c) {
+      std::string& unit = header.columns[c].unit;
+      if (!unit.empty() && !units[c].empty() && unit != units[c])
+        throw Error(place(name, evidence.lines[1].number, fields[c].column),
+                    "unit " + units[c] + " below a name that says " + unit, "one unit for a column");
+      if (unit.empty()) unit = units[c];
+    }
+  }
+  return header;
+}
+
+/// The names and units of the columns, from the options or from the first content lines.
+inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, const CsvOptions& options,
+                             const std::string& name) {
+  if (evidence.lines.empty() && options.columns.empty())
+    throw Error(name, "has no line with content", "a header line and rows of numbers");
+  CsvHeader header = options.columns.empty() ? names_read(evidence, dialect, name) : names_given(options);
+  if (header.columns.size() > options.max_columns)
+    throw Error(place(name, header.line), std::to_string(header.columns.size()) + " columns",
+                "at most " + std::to_string(options.max_columns), "is this the right file, and the right --delimiter?");
+  Problems problems(options.max_errors);
+  std::map<std::string, std::size_t> first_of_name;
+  for (std::size_t c = 0; c < header.columns.size(); ++c) {
+    const CsvColumn& column = header.columns[c];
+    const std::string at = header.line == 0 ? "--columns" : place(name, header.line, column.position);
+    if (column.name.empty())
+      problems.add(Error(at, "column " + std::to_string(c + 1) + " has no name", "a name for each column"));
+    const auto [before, fresh] = first_of_name.emplace(column.name, c + 1);
+    if (!fresh && !column.name.empty())
+      problems.add(Error(at,
+                         "column " + std::to_string(c + 1) + " is called " + shown(column.name) + " like column " +
+                             std::to_string(before->second),
+                         "names that differ", "rename one in the header line"));
+  }
+  problems.throw_if_any();
+  return header;
+}
+
+}  // namespace detail
+}  // namespace thermfit

@@ -1,0 +1,284 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "thermfit/io/csv/header.hpp"
+#include "thermfit/io/nearest.hpp"
+
+namespace thermfit {
+
+/// What the columns of a file mean: names by role, in the order of the file or of the options that chose them.
+struct CsvRoles {
+  std::string time;   ///< empty when there is none
+  std::string batch;  ///< empty when the file is one batch
+  std::vector<std::string> temperatures, errors, inputs;
+  std::vector<std::string> ignored;    ///< text, empty, or not asked for
+  std::vector<std::string> converted;  ///< "T1 from degF"
+  bool assumed_minutes = false;        ///< nobody said what the clock counts
+};
+
+namespace detail {
+
+enum class CsvRole { skip, empty, time, date_time, batch, value };
+
+/// Where a column goes. `index` counts temperatures, then errors, then inputs.
+struct CsvSlot {
+  CsvRole role = CsvRole::skip;
+  std::size_t index = 0;
+  bool convert = false;
+  Unit unit{Quantity::length, 0, 1, 1};
+};
+
+struct CsvLayout {
+  CsvRoles roles;
+  std::vector<CsvSlot> slots;  ///< one a column of the file
+  std::vector<CsvColumn> columns;
+};
+
+/// `*` stands for any text, `?` for one character.
+inline bool matches_glob(std::string_view pattern, std::string_view text) {
+  std::size_t p = 0, t = 0, star = std::string_view::npos, resume = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      resume = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p, ++t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++resume;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+/// What the start of the file says about each column: numbers, text, or date-times in the first filled cell.
+struct ColumnContent {
+  bool numbers = false, text = false, date_time = false;
+};
+
+inline std::vector<ColumnContent> column_contents(const CsvEvidence& evidence, const CsvHeader& header,
+                                                  const CsvDialect& dialect) {
+  std::vector<ColumnContent> contents(header.columns.size());
+  std::vector<CsvField> fields;
+  std::size_t undecided = contents.size();
+  for (std::size_t i = header.content_lines; i < evidence.lines.size() && undecided > 0; ++i) {
+    if (split_line(evidence.lines[i].text, dialect.separator, fields)) continue;
+    for (std::size_t c = 0; c < std::min(contents.size(), fields.size()); ++c) {
+      ColumnContent& content = contents[c];
+      if (content.numbers || is_missing(fields[c].text)) continue;
+      if (!content.text && parse_date_time(fields[c].text)) content.date_time = true;
+      if (parse_field(fields[c].text, dialect.decimal_mark)) {
+        content.numbers = true;
+        --undecided;
+      } else {
+        content.text = true;
+      }
+    }
+  }
+  return contents;
+}
+
+/// Gives each column its role.
+class LayoutMaker {
+ public:
+  LayoutMaker(const CsvHeader& header, std::vector<ColumnContent> contents, const CsvOptions& options, std::string name)
+      : header_(header), contents_(std::move(contents)), options_(options), name_(std::move(name)) {
+    layout_.columns = header.columns;
+    layout_.slots.resize(header.columns.size() + header.empty_last_column);
+    if (header.empty_last_column) layout_.slots.back().role = CsvRole::empty;
+    taken_.resize(header.columns.size());
+  }
+
+  CsvLayout make() {
+    if (!options_.batch_column.empty()) {
+      const std::size_t c = find(options_.batch_column, "--batch-column");
+      layout_.slots[c].role = CsvRole::batch;
+      layout_.roles.batch = take(c, "the batch column");
+    }
+    assign_time();
+    // Errors come first, so that `--temperatures '*'` leaves them alone.
+    const auto errors = options_.errors.empty() ? by_default(is_error_name, "a thermal error")
+                                                : choose(wanted_errors(), "--errors", "a thermal error");
+    const auto temperatures = options_.temperatures.empty()
+                                  ? by_default(is_temperature_name, "a temperature")
+                                  : choose(options_.temperatures, "--temperatures", "a temperature");
+    add_values(temperatures, layout_.roles.temperatures, Quantity::temperature);
+    add_values(errors, layout_.roles.errors, Quantity::length);
+    add_values(options_.inputs ? choose(*options_.inputs, "--inputs", "an input") : remaining_numbers(),
+               layout_.roles.inputs, std::nullopt);
+    for (std::size_t c = 0; c < taken_.size(); ++c)
+      if (taken_[c].empty()) layout_.roles.ignored.push_back(column(c).name);
+    return std::move(layout_);
+  }
+
+ private:
+  const CsvColumn& column(std::size_t c) const { return header_.columns[c]; }
+  std::string place_of(std::size_t c) const {
+    return header_.line == 0 ? "--columns" : place(name_, header_.line, column(c).position);
+  }
+
+  std::string take(std::size_t c, const std::string& as) {
+    if (!taken_[c].empty() && taken_[c] != as)
+      throw Error(place_of(c), column(c).name + " is to be " + taken_[c] + " and " + as, "one role for a column");
+    taken_[c] = as;
+    return column(c).name;
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const CsvColumn& one : header_.columns) all.push_back(one.name);
+    return all;
+  }
+
+  std::size_t find(const std::string& wanted, const std::string& option) const {
+    for (std::size_t c = 0; c < header_.columns.size(); ++c)
+      if (column(c).is_called(wanted)) return c;
+    throw Error(name_, "no column " + shown(wanted) + " (" + option + ")" + did_you_mean(wanted, names()),
+                name_list(names()));
+  }
+
+  /// Columns that the patterns of an option name, each once, in the order of the option.
+  std::vector<std::size_t> choose(const std::vector<std::string>& patterns, const std::string& option,
+                                  const std::string& role) {
+    std::vector<std::size_t> chosen;
+    const auto add = [&](std::size_t c) {
+      if (std::find(chosen.begin(), chosen.end(), c) == chosen.end()) chosen.push_back(c);
+      take(c, role);
+    };
+    for (const std::string& pattern : patterns) {
+      const bool exact = std::any_of(header_.columns.begin(), header_.columns.end(),
+                                     [&](const CsvColumn& one) { return one.is_called(pattern); });
+      if (exact || pattern.find_first_of("*?") == std::string::npos) {
+        add(find(pattern, option));
+        continue;
+      }
+      bool any = false;
+      for (std::size_t c = 0; c < header_.columns.size(); ++c) {
+        const bool is_text = contents_[c].text && !contents_[c].numbers;
+        if ((!taken_[c].empty() && taken_[c] != role) || is_text || !matches_glob(pattern, column(c).name)) continue;
+        add(c);
+        any = true;
+      }
+      if (!any)
+        throw Error(name_, "no column of numbers is like " + shown(pattern) + " (" + option + ")", name_list(names()));
+    }
+    return chosen;
+  }
+
+  std::vector<std::string> wanted_errors() const {
+    if (!options_.errors_may_lack) return options_.errors;
+    std::vector<std::string> there;
+    for (const std::string& name : options_.errors)
+      if (std::any_of(header_.columns.begin(), header_.columns.end(), [&](const auto& c) { return c.is_called(name); }))
+        there.push_back(name);
+    return there;
+  }
+
+  static bool is_temperature_name(const std::string& name) {
+    return name.size() > 1 && name[0] == 'T' && name.find_first_not_of("0123456789", 1) == std::string::npos;
+  }
+  static bool is_error_name(const std::string& name) { return name == "X" || name == "Y" || name == "Z"; }
+
+  bool is_named_by_option(std::size_t c) const {
+    const auto among = [&](const std::vector<std::string>& wanted) {
+      return std::any_of(wanted.begin(), wanted.end(), [&](const auto& one) { return column(c).is_called(one); });
+    };
+    return among(options_.temperatures) || among(options_.errors) || (options_.inputs && among(*options_.inputs));
+  }
+
+  std::vector<std::size_t> by_default(bool (*is_one)(const std::string&), const std::string& role) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t c = 0; c < header_.columns.size(); ++c)
+      if (!options_.plain && taken_[c].empty() && is_one(column(c).name) && !is_named_by_option(c)) {
+        take(c, role);
+        chosen.push_back(c);
+      }
+    return chosen;
+  }
+
+  std::vector<std::size_t> remaining_numbers() {
+    std::vector<std::size_t> chosen;
+    for (std::size_t c = 0; c < header_.columns.size(); ++c)
+      if (taken_[c].empty() && contents_[c].numbers) {
+        take(c, "an input");
+        chosen.push_back(c);
+      }
+    return chosen;
+  }
+
+  void add_values(const std::vector<std::size_t>& chosen, std::vector<std::string>& role_names,
+                  std::optional<Quantity> quantity) {
+    for (const std::size_t c : chosen) {
+      CsvSlot& slot = layout_.slots[c];
+      slot.role = CsvRole::value;
+      slot.index = values_++;
+      if (quantity) set_unit(slot, c, *quantity, column(c).unit);
+      role_names.push_back(column(c).name);
+    }
+  }
+
+  void set_unit(CsvSlot& slot, std::size_t c, Quantity quantity, const std::string& text) {
+    if (text.empty()) return;
+    const auto unit = find_unit(text);
+    if (!unit || unit->quantity != quantity)
+      throw Error(place_of(c), column(c).name + " is in " + shown(text) + (unit ? ", a unit of another quantity" : ""),
+                  std::string(unit_names(quantity)), "name the unit in brackets behind the name");
+    slot.unit = *unit;
+    slot.convert = !unit->is_canonical();
+    if (slot.convert && quantity != Quantity::time) layout_.roles.converted.push_back(column(c).name + " from " + text);
+  }
+
+  void assign_time() {
+    if (options_.time_column == "none") return;
+    std::vector<std::size_t> found;
+    if (!options_.time_column.empty()) found.push_back(find(options_.time_column, "--time-column"));
+    for (std::size_t c = 0; c < header_.columns.size() && options_.time_column.empty(); ++c)
+      if (taken_[c].empty() && !time_unit(column(c).name).empty()) found.push_back(c);
+    for (std::size_t c = 0; c < header_.columns.size() && found.empty() && options_.time_column.empty(); ++c)
+      if (taken_[c].empty() && contents_[c].date_time && !contents_[c].numbers) found.push_back(c);
+    if (found.size() > 1)
+      throw Error(place_of(found[1]), column(found[1]).name + " may be the time, and so may " + column(found[0]).name,
+                  "one clock", "say --time-column " + column(found[0]).name);
+    if (found.empty()) return;
+    const std::size_t c = found.front();
+    layout_.roles.time = take(c, "the time");
+    CsvSlot& slot = layout_.slots[c];
+    slot.role = contents_[c].date_time && !contents_[c].numbers ? CsvRole::date_time : CsvRole::time;
+    if (slot.role == CsvRole::date_time) return;
+    const std::string by_name = time_unit(column(c).name);
+    std::string unit = column(c).unit.empty() && by_name != "?" ? by_name : column(c).unit;
+    if (!options_.time_unit.empty() && !unit.empty() && find_unit(unit) && find_unit(options_.time_unit) &&
+        unit != options_.time_unit)
+      throw Error(place_of(c), column(c).title + " says " + unit + ", --time-unit says " + options_.time_unit,
+                  "one unit for a column");
+    layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
+    if (unit.empty()) unit = options_.time_unit.empty() ? "min" : options_.time_unit;
+    set_unit(slot, c, Quantity::time, unit);
+  }
+
+  /// The unit that a column's name says it is a time in: `s` for time_s, `?` for Time; empty when it is no time.
+  static std::string time_unit(const std::string& name) {
+    if (name == "Time" || name == "time" || name == "t") return "?";
+    if (name.rfind("time_", 0) != 0) return {};
+    const auto unit = find_unit(name.substr(5));
+    return unit && unit->quantity == Quantity::time ? name.substr(5) : std::string();
+  }
+
+  const CsvHeader& header_;
+  std::vector<ColumnContent> contents_;
+  const CsvOptions& options_;
+  std::string name_;
+  CsvLayout layout_;
+  std::vector<std::string> taken_;  ///< role of each column, empty when it has none yet
+  std::size_t values_ = 0;
+};
+
+}  // namespace detail
+}  // namespace thermfit

@@ -1,0 +1,187 @@
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/io/csv/rows.hpp"
+#include "thermfit/io/files/batch_digest.hpp"
+
+namespace thermfit {
+
+/// Batches and what was met on the way to them.
+struct CsvReading {
+  Campaign batches;
+  std::vector<CsvFile> files;
+
+  /// Remarks a user should hear: a dialect that is not the plain one, conversions, missing values, columns left out.
+  /// The same remark about several files is made once.
+  std::vector<std::string> notes(const CsvOptions& options) const;
+};
+
+namespace detail {
+
+/// Rows of one batch as they come, to become columns at the end.
+struct GrowingBatch {
+  std::string key;
+  std::vector<double> time_s, values;
+  Index held_values = 0;
+};
+
+inline Channels channels(const std::vector<std::string>& names, const GrowingBatch& rows, std::size_t first,
+                         std::size_t width) {
+  using RowMajor = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
+  const auto count = static_cast<Index>(rows.time_s.size());
+  const Eigen::Map<const RowMajor> all(rows.values.data(), count, static_cast<Index>(width));
+  return {names, all.middleCols(static_cast<Index>(first), static_cast<Index>(names.size()))};
+}
+
+inline std::string stem(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  for (const char* suffix : {".gz", ".csv", ".CSV", ".txt", ".tsv"})
+    if (name.size() > std::string_view(suffix).size() &&
+        name.compare(name.size() - std::string_view(suffix).size(), std::string::npos, suffix) == 0)
+      name.erase(name.size() - std::string_view(suffix).size());
+  return name;
+}
+
+inline void read_file(const std::string& path, const CsvOptions& options, Problems& problems, CsvReading& reading) {
+  CsvRowReader reader(path, options, problems);
+  const CsvRoles& roles = reader.file().roles;
+  if (roles.temperatures.empty()) {
+    std::vector<std::string> others = roles.inputs;
+    others.insert(others.end(), roles.ignored.begin(), roles.ignored.end());
+    problems.add(Error(reader.file().path, "no temperature point", "T1, T2, … or the names given by --temperatures",
+                       others.size() == 1 ? "one column only: is the separator another? --delimiter says which"
+                                          : "columns there are: " + name_list(others)));
+    return;
+  }
+  const std::size_t width = roles.temperatures.size() + roles.errors.size() + roles.inputs.size();
+  std::vector<GrowingBatch> batches;
+  std::map<std::string, std::size_t, std::less<>> index;
+  GrowingBatch* current = nullptr;
+  CsvRow row{0, {}, 0, {nullptr, 0}, {nullptr, 0}, {nullptr, 0}};
+  while (reader.next(row)) {
+    if (!current || current->key != row.batch) {
+      const auto [found, fresh] = index.emplace(row.batch, batches.size());
+      if (fresh) batches.push_back({std::string(row.batch), {}, {}, 0});
+      current = &batches[found->second];
+    }
+    current->held_values += row.held_values;
+    current->time_s.push_back(row.time_s);
+    current->values.insert(current->values.end(), row.temperatures.data(), row.temperatures.data() + width);
+  }
+  for (GrowingBatch& rows : batches) {
+    Batch batch;
+    batch.name = roles.batch.empty() ? stem(reader.file().path) : rows.key;
+    batch.source = reader.file().path;
+    if (!roles.time.empty())
+      batch.time_s = Eigen::Map<const Vector>(rows.time_s.data(), static_cast<Index>(rows.time_s.size()));
+    batch.temperatures = channels(roles.temperatures, rows, 0, width);
+    batch.errors = channels(roles.errors, rows, roles.temperatures.size(), width);
+    batch.inputs = channels(roles.inputs, rows, roles.temperatures.size() + roles.errors.size(), width);
+    batch.dropped_rows = reader.dropped_rows(rows.key);
+    batch.held_values = rows.held_values;
+    batch.digest = batch_digest(batch);
+    reading.batches.push_back(std::move(batch));
+    rows = {};
+  }
+  reading.files.push_back(reader.file());
+}
+
+/// Brings the channels of a batch into the order of the first one. Throws when a name is missing or surplus.
+inline void agree(const Channels& wanted, Channels& channels, const Batch& batch, const Batch& first,
+                  const std::string& kind, const std::string& option) {
+  if (channels.names == wanted.names) return;
+  std::vector<std::string> missing, surplus;
+  for (const std::string& name : wanted.names)
+    if (channels.find(name) < 0) missing.push_back(name);
+  for (const std::string& name : channels.names)
+    if (wanted.find(name) < 0) surplus.push_back(name);
+  if (!missing.empty() || !surplus.empty())
+    throw Error(batch.source,
+                (missing.empty() ? "has " + kind + " " + name_list(surplus) + " beyond those"
+                                 : "lacks " + kind + " " + name_list(missing)) +
+                    " of " + first.source,
+                "the same in every batch: " + name_list(wanted.names), "choose common ones with " + option);
+  Channels ordered{wanted.names, Matrix(channels.values.rows(), channels.values.cols())};
+  for (Index c = 0; c < wanted.count(); ++c)
+    ordered.values.col(c) = channels.values.col(channels.find(wanted.names[static_cast<std::size_t>(c)]));
+  channels = std::move(ordered);
+}
+
+/// Names that occur twice get their path (or path and value) instead.
+inline void make_names_differ(Campaign& batches) {
+  std::map<std::string, std::size_t> count;
+  for (const Batch& batch : batches) ++count[batch.name];
+  for (Batch& batch : batches) {
+    if (count[batch.name] < 2) continue;
+    const std::string path = (std::filesystem::path(batch.source).parent_path() / stem(batch.source)).string();
+    batch.name = stem(batch.source) == batch.name ? path : path + ':' + batch.name;
+  }
+}
+
+}  // namespace detail
+
+/// Reads batches from files (`-`: standard input), in the order given. All have the same temperature points and errors,
+/// in the order of the first. Throws Error, or Errors with everything that is wrong in all files up to
+/// options.max_errors.
+inline CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions& options = {}) {
+  CsvReading reading;
+  Problems problems(options.max_errors);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
+        paths.begin() + static_cast<std::ptrdiff_t>(i)) {
+      problems.add(Error(paths[i], "is given twice", "each file once"));
+      continue;
+    }
+    try {
+      detail::read_file(paths[i], options, problems, reading);
+    } catch (const Errors&) {
+      throw;
+    } catch (const Error& error) {
+      problems.add(error);
+    }
+  }
+  problems.throw_if_any();
+  for (Batch& batch : reading.batches) {
+    const Batch& first = reading.batches.front();
+    detail::agree(first.temperatures, batch.temperatures, batch, first, "temperature points", "--temperatures");
+    detail::agree(first.errors, batch.errors, batch, first, "errors", "--errors");
+  }
+  detail::make_names_differ(reading.batches);
+  return reading;
+}
+
+inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) const {
+  std::vector<std::pair<std::string, std::vector<std::string>>> found;
+  const auto add = [&](const CsvFile& file, const std::string& text) {
+    for (auto& [known, paths] : found)
+      if (known == text) return paths.push_back(file.path);
+    found.push_back({text, {file.path}});
+  };
+  for (const CsvFile& file : files) {
+    if (!file.dialect.is_plain()) add(file, file.dialect.description());
+    if (file.roles.assumed_minutes) add(file, file.roles.time + " names no unit: minutes (--time-unit tells another)");
+    if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
+    if (!file.roles.ignored.empty() && !options.inputs)
+      add(file, "left out, no numbers: " + name_list(file.roles.ignored));
+    if (file.missing == 0 || options.missing == MissingValues::keep) continue;
+    const std::string cells = std::to_string(file.missing) + (file.missing == 1 ? " missing value" : " missing values");
+    add(file, options.missing == MissingValues::drop
+                  ? std::to_string(file.dropped_rows) + (file.dropped_rows == 1 ? " row" : " rows") + " left out for " +
+                        cells + ", first " + file.first_missing
+                  : cells + " held, first " + file.first_missing);
+  }
+  std::vector<std::string> notes;
+  for (const auto& [text, paths] : found)
+    notes.push_back(paths.front() +
+                    (paths.size() > 1 ? " and " + std::to_string(paths.size() - 1) + " more" : std::string()) + ": " +
+                    text);
+  return notes;
+}
+
+}  // namespace thermfit

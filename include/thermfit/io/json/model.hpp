@@ -1,0 +1,229 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "thermfit/io/files/atomic_file.hpp"
+#include "thermfit/io/files/sha256.hpp"
+#include "thermfit/io/json/node.hpp"
+#include "thermfit/model/trained_model.hpp"
+#include "thermfit/version.hpp"
+
+/// The model file `thermfit-model/1`: readable JSON with 17 digits, bounded counts and a digest over all of it.
+
+namespace thermfit {
+namespace detail {
+
+constexpr Index most_sensors = 2000, most_errors = 100;
+
+/// Puts the fields that `describe_model` names into a JSON object.
+class ModelWriter {
+ public:
+  explicit ModelWriter(Json& object) : object_(object) {}
+  void text(const char* key, const std::string& value) { object_[key] = value; }
+  void texts(const char* key, const std::vector<std::string>& values, Index) { object_[key] = values; }
+  void choice(const char* key, std::string& value, const std::vector<std::string>&) { object_[key] = value; }
+  void integer(const char* key, Index value, Index) { object_[key] = value; }
+  void number(const char* key, double value) { object_[key] = std::isfinite(value) ? Json(value) : Json(); }
+  void vector(const char* key, const Vector& values, Index) { object_[key] = to_json(values); }
+  void matrix(const char* key, const Matrix& values, Index, Index) { object_[key] = to_json(values); }
+  template <class Describe>
+  void object(const char* key, bool present, Describe describe) {
+    if (!present) return;
+    Json inner = Json::object();
+    ModelWriter writer(inner);
+    describe(writer);
+    object_[key] = std::move(inner);
+  }
+  template <class Item, class Describe>
+  void list(const char* key, std::vector<Item>& items, Index, Describe describe) {
+    Json list = Json::array();
+    for (Item& item : items) {
+      Json inner = Json::object();
+      ModelWriter writer(inner);
+      describe(writer, item);
+      list.push_back(std::move(inner));
+    }
+    object_[key] = std::move(list);
+  }
+
+ private:
+  Json& object_;
+};
+
+/// Takes the same fields out of a JSON object, checking type, range, length and that no other key is there.
+class ModelReader {
+ public:
+  explicit ModelReader(JsonNode node, std::vector<std::string> other_keys = {})
+      : node_(std::move(node)), keys_(std::move(other_keys)) {}
+  void text(const char* key, std::string& value) { value = at(key).text(); }
+  void texts(const char* key, std::vector<std::string>& values, Index most) {
+    values = at(key).texts(static_cast<std::size_t>(most));
+    if (values.empty()) at(key).fail("an empty list", "at least one name");
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (values[i] == values[j]) at(key).item(i).fail("'" + values[i] + "' twice");
+  }
+  void choice(const char* key, std::string& value, const std::vector<std::string>& allowed) {
+    value = at(key).choice(allowed);
+  }
+  void integer(const char* key, Index& value, Index most) { value = at(key).integer(0, most); }
+  void number(const char* key, double& value) {
+    const JsonNode node = at(key);
+    value = node.json().is_null() ? std::numeric_limits<double>::infinity() : node.number();
+  }
+  void vector(const char* key, Vector& values, Index length) { values = at(key).vector(length); }
+  void matrix(const char* key, Matrix& values, Index rows, Index columns) { values = at(key).matrix(rows, columns); }
+  template <class Describe>
+  void object(const char* key, bool present, Describe describe) {
+    if (!present) return;
+    ModelReader reader(at(key));
+    describe(reader);
+    reader.finish();
+  }
+  template <class Item, class Describe>
+  void list(const char* key, std::vector<Item>& items, Index most, Describe describe) {
+    const JsonNode node = at(key);
+    items.resize(node.size(static_cast<std::size_t>(most)));
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      ModelReader reader(node.item(i));
+      describe(reader, items[i]);
+      reader.finish();
+    }
+  }
+  void finish() const { node_.require_keys(keys_); }
+
+ private:
+  JsonNode at(const char* key) {
+    keys_.emplace_back(key);
+    return node_.at(key);
+  }
+
+  JsonNode node_;
+  std::vector<std::string> keys_;
+};
+
+/// Every field of a model file once, for reading and for writing.
+template <class Archive>
+void describe_model(Archive& io, TrainedModel& m) {
+  io.text("tool_version", m.tool_version);
+  io.choice("method", m.method, {"pls", "mlr", "pcr", "ridge"});
+  io.text("selection", m.selection);
+  io.texts("temperatures", m.temperatures, most_sensors);
+  io.texts("errors", m.errors, most_errors);
+  const Index p = static_cast<Index>(m.temperatures.size()), q = static_cast<Index>(m.errors.size());
+  std::string reference = m.reference == TemperatureReference::rise ? "rise" : "absolute";
+  io.choice("reference", reference, {"rise", "absolute"});
+  m.reference = reference == "rise" ? TemperatureReference::rise : TemperatureReference::absolute;
+  io.integer("components", m.components, p);
+  io.number("ridge_lambda", m.ridge_lambda);
+
+  io.vector("intercept_um", m.model.intercept, q);
+  io.matrix("um_per_K", m.model.coefficients, p, q);
+  io.matrix("standardised_coefficients", m.standardised_coefficients, p, q);
+  io.vector("temperature_mean", m.temperature_mean, p);
+  io.vector("temperature_scale", m.temperature_scale, p);
+  io.vector("error_mean_um", m.error_mean, q);
+  io.vector("error_scale_um", m.error_scale, q);
+  io.vector("residual_deviation_um", m.residual_deviation_um, q);
+  io.integer("degrees_of_freedom", m.degrees_of_freedom, std::numeric_limits<Index>::max());
+  io.number("condition_number", m.condition_number);
+
+  const Index a = m.components;
+  io.object("latent_variables", a > 0, [&](auto& inner) {
+    LatentVariables& v = m.latent;
+    inner.matrix("weights", v.weights, p, a);
+    inner.matrix("loadings", v.loadings, p, a);
+    inner.matrix("rotations", v.rotations, p, a);
+    inner.matrix("error_loadings", v.error_loadings, q, a);
+    inner.vector("explained_temperature_variance", v.explained_temperature_variance, a);
+    inner.vector("explained_error_variance", v.explained_error_variance, a);
+    inner.vector("vip", v.vip, p);
+  });
+  io.object("training_domain", true, [&](auto& inner) {
+    TrainingDomain<>& d = m.domain;
+    inner.vector("lowest", d.lowest, p);
+    inner.vector("highest", d.highest, p);
+    inner.vector("mean", d.mean, p);
+    inner.vector("scale", d.scale, p);
+    Index components = d.score_variance.size();
+    inner.integer("components", components, p);
+    inner.matrix("rotations", d.rotations, p, components);
+    inner.matrix("loadings", d.loadings, p, components);
+    inner.vector("score_variance", d.score_variance, components);
+    inner.number("t2_limit_95", d.t2_limit_95);
+    inner.number("t2_limit_99", d.t2_limit_99);
+    inner.number("spe_limit_95", d.spe_limit_95);
+    inner.number("spe_limit_99", d.spe_limit_99);
+  });
+  io.object("sensor_envelope", true, [&](auto& inner) {
+    SensorEnvelope& e = m.envelope;
+    std::string known = e.has_rates() ? "range and rates" : e.has_range() ? "range" : "nothing";
+    inner.choice("known", known, {"nothing", "range", "range and rates"});
+    const Index ranges = known == "nothing" ? 0 : p, rates = known == "range and rates" ? p : 0;
+    inner.vector("lowest_degC", e.lowest_degC, ranges);
+    inner.vector("highest_degC", e.highest_degC, ranges);
+    inner.vector("largest_rate_K_per_min", e.largest_rate_K_per_min, rates);
+    inner.vector("longest_still_min", e.longest_still_min, rates);
+  });
+  io.list("substitutes", m.substitutes, p, [&](auto& inner, SubstituteModel& s) {
+    inner.integer("lost", s.lost, p - 1);
+    inner.vector("intercept_um", s.model.intercept, q);
+    inner.matrix("um_per_K", s.model.coefficients, p, q);
+    inner.vector("residual_deviation_um", s.residual_deviation_um, q);
+  });
+  io.list("batches", m.batches, 100000, [&](auto& inner, TrainingBatch& b) {
+    inner.text("name", b.name);
+    inner.integer("rows", b.rows, std::numeric_limits<Index>::max());
+    inner.text("digest", b.digest);
+  });
+}
+
+inline std::string model_digest(Json document) {
+  document.erase("digest");
+  return "sha256:" + sha256_hex(document.dump());
+}
+
+}  // namespace detail
+
+/// The document of a model, digest included. Allocates.
+inline Json model_to_json(TrainedModel model) {
+  Json document{{"format", "thermfit-model/1"}};
+  detail::ModelWriter writer(document);
+  detail::describe_model(writer, model);
+  document["digest"] = detail::model_digest(document);
+  return document;
+}
+
+/// A model from its document. Throws Error with the key path on a wrong format or version, an unknown or missing key, a
+/// value of another type, length or range, and when the digest tells that the document was edited or damaged.
+inline TrainedModel model_from_json(const Json& document, const std::string& file) {
+  const JsonNode root(document, file);
+  root.require_format("thermfit-model", 1);
+  TrainedModel model;
+  detail::ModelReader reader(root, {"format", "digest"});
+  detail::describe_model(reader, model);
+  reader.finish();
+  const std::string digest = root.at("digest").text();
+  if (digest != detail::model_digest(document))
+    root.at("digest").fail("the digest does not fit the content", "",
+                           "the file was edited or damaged: fit the model again");
+  const auto positive = [&](const Vector& values, const char* name) {
+    if ((values.array() <= 0).any()) root.fail(std::string(name) + " holds a value that is not above 0");
+  };
+  positive(model.temperature_scale, "temperature_scale");
+  positive(model.error_scale, "error_scale_um");
+  positive(model.domain.scale, "training_domain.scale");
+  positive(model.domain.score_variance, "training_domain.score_variance");
+  return model;
+}
+
+/// Saves so that a reader sees the old file or the whole new one.
+inline void save_model(const TrainedModel& model, const std::string& path) {
+  write_atomically(path, model_to_json(model).dump(1) + '\n');
+}
+
+inline TrainedModel load_model(const std::string& path) { return model_from_json(read_json(path), path); }
+
+}  // namespace thermfit
