@@ -1,13 +1,14 @@
+#include "thermfit/diagnosis/diagnose.hpp"
+
 #include <algorithm>
 
 #include "cli/campaign_options.hpp"
 #include "commands/commands.hpp"
-#include "report/diagnosis_report.hpp"
-#include "thermfit/diagnosis/elaborate.hpp"
+#include "report/diagnosis_json.hpp"
+#include "report/diagnosis_text.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/files/atomic_file.hpp"
-#include "thermfit/io/json/diagnosis.hpp"
 #include "thermfit/io/json/machine.hpp"
 
 namespace thermfit::cli {
@@ -72,7 +73,7 @@ Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
   options.progress = [&console](const std::string& what) { console.progress(what); };
   const Campaign real = read_campaign(arguments, console, arguments.positionals());
   const Campaign sim = read_campaign(arguments, console, arguments.values("--sim"));
-  return diagnose_paired(real, sim, options);
+  return diagnose_paired(real, sim, standard_effects(), options);
 }
 
 Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
@@ -93,11 +94,11 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
   };
   const Campaign real = read_campaign(arguments, console, {words.begin() + 1, words.end()});
   require_time(real);
-  Diagnosed found = diagnose_fully(machine, real, library, options);
-  elaborate(found, machine, real, library, seed_of(arguments));
-  if (found.diagnosis.machine.empty()) found.diagnosis.machine = words[0];
-  if (const auto path = arguments.value("--write")) write_atomically(*path, machine_to_json(found.best).dump(1) + "\n");
-  return std::move(found.diagnosis);
+  Diagnosis found = diagnose(machine, real, library, options);
+  if (found.machine.empty()) found.machine = words[0];
+  if (const auto path = arguments.value("--write"))
+    write_atomically(*path, machine_to_json(found.with_effects).dump(1) + "\n");
+  return found;
 }
 
 Exit run_diagnose(const Arguments& arguments, Console& console) {
@@ -111,7 +112,7 @@ Exit run_diagnose(const Arguments& arguments, Console& console) {
   const Diagnosis diagnosis = paired ? diagnose_outputs(arguments, console) : diagnose_machine(arguments, console);
   console.progress({});
   if (arguments.has("--json"))
-    console.line(diagnosis_to_json(diagnosis).dump(1));
+    console.line(diagnosis_json(diagnosis));
   else
     console.print(diagnosis_text(diagnosis));
   const bool told = diagnosis.verdict != Verdict::ambiguous && diagnosis.verdict != Verdict::unknown;

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "thermfit/diagnosis/diagnosis.hpp"
-#include "thermfit/diagnosis/judgement/gap_levels.hpp"
-#include "thermfit/diagnosis/judgement/judge.hpp"
-#include "thermfit/diagnosis/judgement/proof.hpp"
-#include "thermfit/diagnosis/search/search.hpp"
+#include "thermfit/calibration/lone_input.hpp"
+#include "thermfit/compiled.hpp"
+#include "thermfit/diagnosis/claims.hpp"
+#include "thermfit/diagnosis/data_problems.hpp"
+#include "thermfit/diagnosis/planning/next_experiment.hpp"
+#include "thermfit/diagnosis/where/remaining.hpp"
+#include "thermfit/diagnosis/where/transfer.hpp"
+#include "thermfit/diagnosis/where/where.hpp"
 #include "thermfit/effects/setting.hpp"
 
 namespace thermfit {
@@ -18,40 +22,44 @@ namespace thermfit {
 struct DiagnoseOptions {
   std::vector<std::string> effects;  ///< look for these only; empty: the whole library
   std::vector<std::string> without;  ///< leave these out
-  std::uint64_t seed = 1;            ///< of resampling
+  std::uint32_t seed = 1;            ///< of resampling
   SearchOptions search;
-  JudgingOptions judging;
+  Thresholds thresholds;
 };
 
-/// A diagnosis with what it was made from, for views that need the machines and the residuals.
-struct Diagnosed {
-  Diagnosis diagnosis;
-  SearchResult investigation;
-  GapResiduals residuals;              ///< held out where the batches allow
-  ThermalNetwork calibrated;           ///< the machine after calibration alone
-  ThermalNetwork best;                 ///< with the effects found; equal to `calibrated` where none is named
-  std::vector<ThermalNetwork> rivals;  ///< fitted machines of the explanations that were listed, best first
-};
+/// Fewest samples of a batch whose course in time can be compared.
+constexpr Index least_samples = 8;
 
 namespace detail {
 
-inline bool wanted(const std::string& effect, const DiagnoseOptions& options) {
-  const auto holds = [&](const std::vector<std::string>& list) {
+/// The candidates of the effects that are asked for.
+inline std::vector<ThermalNetwork::AddedEffect> wanted_candidates(const EffectLibrary& library, const Setting& setting,
+                                                                  const DiagnoseOptions& options) {
+  for (const auto* list : {&options.effects, &options.without})
+    for (const std::string& name : *list) library.at(name);
+  const auto holds = [](const std::vector<std::string>& list, const std::string& effect) {
     return std::find(list.begin(), list.end(), effect) != list.end();
   };
-  return (options.effects.empty() || holds(options.effects)) && !holds(options.without);
+  std::vector<ThermalNetwork::AddedEffect> result;
+  for (ThermalNetwork::AddedEffect& one : library.candidates(setting))
+    if ((options.effects.empty() || holds(options.effects, one.effect)) && !holds(options.without, one.effect))
+      result.push_back(std::move(one));
+  return result;
 }
 
+/// A posterior variance below this share of the prior's: the data, not the prior, decide the parameter.
+constexpr double decided_variance = 0.5;
+
 /// How far the parameters of the machine itself moved, largest first.
-inline std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
-  const Index n = fit.coordinates.size();
-  const Matrix covariance = fit.covariance();
+template <typename Scalar = double>
+std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
+  const MatrixX<Scalar> covariance = fit.covariance();
   std::vector<CalibrationMove> result;
-  for (Index j = 0; j < n; ++j) {
+  for (Index j = 0; j < covariance.rows(); ++j) {
     const Parameter& one = fit.parameter(j);
     if (one.kind == Parameter::Kind::effect) continue;
-    result.push_back(
-        {one.name, one.unit, one.value(0), one.value(fit.coordinates(j)), fit.coordinates(j), covariance(j, j) < 0.5});
+    const double moved = fit.coordinates(j);
+    result.push_back({one.name, one.unit, one.value(0), one.value(moved), moved, covariance(j, j) < decided_variance});
   }
   std::stable_sort(result.begin(), result.end(), [](const CalibrationMove& a, const CalibrationMove& b) {
     return std::abs(a.prior_sds) > std::abs(b.prior_sds);
@@ -59,14 +67,17 @@ inline std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
   return result;
 }
 
-inline std::vector<RuledOut> ruled_out(const SearchResult& found, const Judgement& judgement) {
+/// Half a percent of the gap: less is no shrink.
+constexpr double least_share = 0.005;
+
+/// The best place of every effect that is neither named nor a rival, with what it closes.
+template <typename Scalar = double>
+std::vector<RuledOut> ruled_out(const SearchResult& found, const Judgement& judgement) {
   std::vector<RuledOut> result;
-  const double before = excess_of(misfit_of(found.seen, found.calibrated.held.residual));
+  const auto excess = [&](const Account& one) { return excess_of(misfit_of<Scalar>(found.seen, one.held.residual)); };
+  const double before = excess(found.calibrated);
   const bool nothing_lacks = judgement.verdict == Verdict::none || judgement.verdict == Verdict::miscalibration;
   if (before <= 0 || nothing_lacks) return result;
-  const auto percent = [](double share) {
-    return std::to_string(static_cast<int>(std::lround(100 * std::clamp(share, 0.0, 1.0)))) + " %";
-  };
   std::vector<std::string> said;
   for (const FoundEffect& one : judgement.effects) {
     said.push_back(one.effect);
@@ -76,94 +87,143 @@ inline std::vector<RuledOut> ruled_out(const SearchResult& found, const Judgemen
     const ThermalNetwork::AddedEffect& added = one.effects[0];
     if (std::find(said.begin(), said.end(), added.effect) != said.end()) continue;
     said.push_back(added.effect);
-    const double share = 1 - excess_of(misfit_of(found.seen, one.held.residual)) / before;
-    std::string reason = share < 0.005 ? "does not shrink the gap on held-out batches"
-                                       : "closes " + percent(share) + " of the gap on held-out batches";
-    if (share >= 0.005 && !judgement.effects.empty())
-      reason +=
-          ", the best " + percent(1 - excess_of(misfit_of(found.seen, judgement.nearest->held.residual)) / before);
-    result.push_back({added.effect, added.location, std::move(reason)});
+    RuledOut entry{added.effect, added.location, RuledOutBy::no_shrink, 1 - excess(one) / before};
+    if (entry.value >= least_share) {
+      entry.by = RuledOutBy::share;
+      if (!judgement.effects.empty()) entry.best = 1 - excess(found.at(judgement.nearest)) / before;
+    }
+    result.push_back(std::move(entry));
   }
   return result;
 }
 
-inline std::vector<std::string> weaker_claims(const SearchResult& found, const Setting& setting) {
-  std::vector<std::string> result;
-  const std::size_t batches = found.seen.batches();
-  if (batches < 2)
-    result.push_back(
-        "One batch only: nothing can be judged on data not used for fitting. Every figure is that of the "
-        "fit itself, and a wrong effect may look right.");
-  else if (batches < 4)
-    result.push_back("Only " + std::to_string(batches) +
-                     " batches: held-out figures rest on few data and the interval "
-                     "of the shrink is wide.");
-  for (const std::string& input : setting.constant_inputs)
-    result.push_back("Input " + input + " never changes: effects that it drives cannot be told from calibration.");
+/// What few batches, constant inputs and inputs that are on in one batch alone do not allow to say.
+template <typename Scalar = double>
+std::vector<WeakerClaim> claims_of(const SearchResult& found, const ThermalNetwork& given, const Setting& setting) {
+  std::vector<WeakerClaim> result = weaker_claims(found.seen.batches(), setting.constant_inputs);
+  for (const LoneInput& one : lone_inputs(given, found.seen))
+    result.push_back({WeakerClaim::Kind::lone_input,
+                      found.seen.excitations[0].input_names[static_cast<std::size_t>(one.input)],
+                      found.seen.names[one.batch],
+                      {},
+                      found.seen.batches()});
   return result;
+}
+
+/// What remains in the channel of the gap; where the gap is that of all temperatures, in each of them.
+template <typename Scalar = double>
+Remaining remaining_of(const SearchResult& found, const Judgement& judgement, const Gap& gap, const Campaign& real,
+                       unsigned seed) {
+  Remaining result;
+  result.white = true;
+  result.unexplained = unexplained(gap.rms.with_effect, gap.rms.noise);
+  for (const std::size_t c : told_channels(found.seen)) {
+    const GapLevels& rms = gap.per_sensor[c].rms;
+    auto [look, white] = remaining_look(real, without_missing<Scalar>(judgement.levels.with_effect[c]), rms.with_effect,
+                                        rms.noise, seed);
+    if (!found.seen.channels[c].displacement) look.channel = found.seen.channels[c].name;
+    result.white = result.white && white;
+    result.looks.push_back(std::move(look));
+  }
+  return result;
+}
+
+/// What the gap costs a compensation model, where the displacement was measured and nothing is missing.
+template <typename Scalar = double>
+Transfer transfer_by_level(const SearchResult& found, const Judgement& judgement, const ThermalNetwork& given,
+                           const Campaign& real, const EffectLibrary& library) {
+  const ObservedChannel& told = found.seen.channels[told_channels(found.seen)[0]];
+  if (!told.displacement) return {};
+  for (const Batch& batch : real) {
+    const MatrixX<Scalar>&temperatures = batch.temperatures.values, &errors = batch.errors.values;
+    if (!temperatures.allFinite() || !errors.allFinite()) return {};
+  }
+  const auto simulated = [&](const ThermalNetwork& network) {
+    return simulated_campaign<Scalar>(network, real, library);
+  };
+  return transfer_of(
+      {simulated(given), simulated(found.calibrated.fit.network()), simulated(found.at(judgement.best).fit.network())},
+      real, told.name);
+}
+
+/// The fitted machines of the first effect and of those of its rivals that were fitted beside as many effects.
+template <typename Scalar = double>
+std::vector<FittedRival> fitted_rivals(const SearchResult& found, const Judgement& judgement) {
+  std::vector<FittedRival> result;
+  if (judgement.effects.empty()) return result;
+  const Account& best = found.at(judgement.best);
+  const FoundEffect& first = judgement.effects[0];
+  result.push_back({{first.effect, first.location, first.driver, first.confidence}, best.fit.network()});
+  const auto fitted = [&](const Rival& rival) -> const Account* {
+    for (const auto* accounts : {&found.single, &found.several})
+      for (const Account& account : *accounts) {
+        if (account.effects.size() != best.effects.size()) continue;
+        for (const ThermalNetwork::AddedEffect& added : account.effects)
+          if (same_place(added, {rival.effect, rival.location, rival.driver, {}})) return &account;
+      }
+    return nullptr;
+  };
+  for (const Rival& rival : first.alternatives)
+    if (const Account* account = fitted(rival)) result.push_back({rival, account->fit.network()});
+  return result;
+}
+
+template <typename Scalar = double>
+NextExperiment experiment_after(const SearchResult& found, const Judgement& judgement, const Diagnosis& diagnosis,
+                                const EffectLibrary& library) {
+  const std::vector<FittedRival> rivals = fitted_rivals<Scalar>(found, judgement);
+  const Account& nearest = found.single.empty() ? found.calibrated : found.single[0];
+  if (rivals.size() > 1) return next_experiment(rivals, found.seen, found.calibrated.fit, nearest.fit.noise, library);
+  double hours = 0;
+  for (const Vector& time_s : found.seen.time_s) hours = std::max(hours, time_s(time_s.size() - 1) / 3600);
+  return experiment_without_rivals(diagnosis, hours);
+}
+
+inline void require_courses(const Campaign& real) {
+  if (real.empty()) throw Error("campaign", "no batches", "at least one, better five or more");
+  for (const Batch& batch : real)
+    if (batch.rows() < least_samples)
+      throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
+                  std::to_string(batch.rows()) + " samples", "at least " + std::to_string(least_samples),
+                  "a diagnosis compares courses in time");
 }
 
 }  // namespace detail
 
-/// Diagnoses why `network` disagrees with `real`. Throws Error on a campaign that cannot drive it, an unknown name in
-/// `effects` or `without`, or missing times.
-inline Diagnosed diagnose_fully(const ThermalNetwork& network, const Campaign& real, const EffectLibrary& library,
-                                const DiagnoseOptions& options = {}) {
-  for (const auto* list : {&options.effects, &options.without})
-    for (const std::string& name : *list) library.at(name);
-  if (real.empty()) throw Error("campaign", "no batches", "at least one, better five or more");
-  for (const Batch& batch : real)
-    if (batch.rows() < 8)
-      throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
-                  std::to_string(batch.rows()) + " samples", "at least 8", "a diagnosis compares courses in time");
-  const Setting setting = setting_of(network, real);
-  std::vector<ThermalNetwork::AddedEffect> candidates;
-  for (ThermalNetwork::AddedEffect& one : library.candidates(setting))
-    if (detail::wanted(one.effect, options)) candidates.push_back(std::move(one));
+/// Diagnoses why `machine` disagrees with the measured batches `real`: calibrates it, tries every effect of `library`
+/// at every place together with the calibration, judges on batches not used, and says where the gap lies, what remains
+/// and what to measure next. The result is complete. Throws Error on a campaign that cannot drive the machine, an
+/// unknown name in `options`, or missing times. Allocates.
+template <typename Scalar = double>
+Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& real, const EffectLibrary& library,
+                   const DiagnoseOptions& options = {}) {
+  detail::require_courses(real);
+  const Setting setting = setting_of(machine, real);
+  const SearchResult found =
+      search(machine, real, library, detail::wanted_candidates(library, setting, options), options.search);
+  const SearchContext context{found.seen, found.machine, library, found.folds, options.search.threads};
+  const Judgement judgement = judge(context, found, options.thresholds, options.seed);
 
-  Diagnosed result;
-  result.investigation = investigate(network, real, library, candidates, options.search);
-  const SearchResult& found = result.investigation;
-  const SearchContext inquiry{found.seen, found.machine, library, found.folds, options.search.threads};
-  Judgement judgement = judge(inquiry, found, options.judging);
-
-  result.residuals.as_simulated = found.as_given;
-  result.residuals.calibrated = found.calibrated.held.residual;
-  result.residuals.with_effect = judgement.best->held.residual;
-  demand_proof(judgement, result.residuals, found, library, options.judging, options.seed);
-
-  Diagnosis& diagnosis = result.diagnosis;
-  diagnosis.machine = network.name;
+  Diagnosis diagnosis;
+  diagnosis.machine = machine.name;
   diagnosis.batches = found.seen.names;
   diagnosis.verdict = judgement.verdict;
   diagnosis.effects = judgement.effects;
-  diagnosis.grounds = judgement.grounds;
-  result.residuals.noise = noise_floor(found.seen, judgement.nearest->held.residual);
-  diagnosis.gap = gap_of(found.seen, result.residuals, options.seed, !found.folds.empty());
-  diagnosis.calibration = detail::calibration_moves(judgement.best->fit);
-  diagnosis.ruled_out = detail::ruled_out(found, judgement);
-  diagnosis.weaker_claims = detail::weaker_claims(found, setting);
-  result.calibrated = found.calibrated.fit.network();
-  result.best = judgement.best->fit.network();
-  const auto fitted = [&](const Rival& rival) {
-    for (const auto* accounts : {&found.single, &found.several})
-      for (const Account& account : *accounts) {
-        if (account.effects.size() != judgement.best->effects.size()) continue;
-        for (const ThermalNetwork::AddedEffect& added : account.effects)
-          if (added.effect == rival.effect && added.location == rival.location && added.driver == rival.driver)
-            return &account;
-      }
-    return static_cast<const Account*>(nullptr);
-  };
-  for (const FoundEffect& one : judgement.effects)
-    for (const Rival& rival : one.alternatives)
-      if (const Account* account = fitted(rival)) result.rivals.push_back(account->fit.network());
-  return result;
+  diagnosis.support = judgement.support;
+  diagnosis.gap = gap_of(found.seen, judgement.levels, options.seed, !found.folds.empty());
+  diagnosis.gap.transfer = detail::transfer_by_level<Scalar>(found, judgement, machine, real, library);
+  diagnosis.where = where_of(found, judgement, machine, real, library);
+  diagnosis.remaining = detail::remaining_of<Scalar>(found, judgement, diagnosis.gap, real, options.seed);
+  diagnosis.calibration = detail::calibration_moves<Scalar>(found.at(judgement.best).fit);
+  diagnosis.ruled_out = detail::ruled_out<Scalar>(found, judgement);
+  diagnosis.data_problems = data_problems(machine, real);
+  diagnosis.weaker_claims = detail::claims_of<Scalar>(found, machine, setting);
+  diagnosis.with_effects = found.at(judgement.best).fit.network();
+  diagnosis.next_experiment = detail::experiment_after<Scalar>(found, judgement, diagnosis, library);
+  return diagnosis;
 }
 
-inline Diagnosis diagnose(const ThermalNetwork& network, const Campaign& real, const EffectLibrary& library,
-                          const DiagnoseOptions& options = {}) {
-  return diagnose_fully(network, real, library, options).diagnosis;
-}
+THERMFIT_COMPILED_TEMPLATE(Diagnosis diagnose<double>(const ThermalNetwork&, const Campaign&, const EffectLibrary&,
+                                                      const DiagnoseOptions&));
 
 }  // namespace thermfit

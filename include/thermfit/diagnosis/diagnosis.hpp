@@ -1,14 +1,24 @@
 #pragma once
 
-/// What a diagnosis says, as plain data: the members of `thermfit-diagnosis/1`, in the same order and with the same
-/// names. No algorithm lives here; diagnosis/diagnose.hpp and diagnosis/outputs/diagnose_outputs.hpp fill it,
-/// io/json/diagnosis.hpp and the text report print it.
+/// What a diagnosis says, as codes and numbers: the members of `thermfit-diagnosis/1`, in the same order and with the
+/// same names. No algorithm and no sentence lives here; diagnosis/diagnose.hpp fills it, a report puts it into words.
 
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "thermfit/network/schedule.hpp"
+#include "thermfit/network/thermal_network.hpp"
+
 namespace thermfit {
+
+/// What stood for the simulator.
+enum class SimulatorKind {
+  network,  ///< a machine file: effects were added to it
+  outputs   ///< somebody else's, of which only the outputs were at hand
+};
 
 enum class Verdict {
   none,            ///< the machine as given is already at the noise
@@ -18,6 +28,7 @@ enum class Verdict {
   unknown          ///< the gap is real and nothing in the catalogue closes it on held-out batches
 };
 
+/// The word of the document for it.
 inline const char* word_of(Verdict verdict) {
   constexpr std::array<const char*, 5> words{"none", "miscalibration", "effect", "ambiguous", "unknown"};
   return words[static_cast<std::size_t>(verdict)];
@@ -47,15 +58,31 @@ struct FoundEffect {
   std::vector<Estimate> parameters;
   std::vector<Rival> alternatives;      ///< strongest first; all of them above 5 %
   std::vector<std::string> same_place;  ///< places that cannot be told from `location` on these data
+  std::string meaning;                  ///< what the effect says of itself, Effect::meaning()
+  bool against_as_given = false;        ///< calibration can do the same: it counts against the machine as given
 };
 
-/// An explanation that was tried and dropped, and why.
+/// Why an explanation that was tried was dropped.
+enum class RuledOutBy {
+  no_shrink,    ///< the held-out gap does not shrink
+  share,        ///< it closes `value` of the held-out gap, the best account `best` (NaN where none is named)
+  calibration,  ///< no better than calibration: `value` nats
+  evidence,     ///< `value` nats behind the best
+  strength,     ///< fits only with `value` times the strength of its law
+  sign,         ///< the thermometers respond with the wrong sign
+  elsewhere,    ///< other thermometers than its own respond most
+  same_sign,    ///< both ends of a heat exchange respond with the same sign
+  remains       ///< comes nearest, but leaves too much on batches left out
+};
+
 struct RuledOut {
   std::string effect, location;
-  std::string reason;  ///< "shrinks the held-out gap by 3 % only"
+  RuledOutBy by = RuledOutBy::no_shrink;
+  double value = 0;
+  double best = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// rms of measured minus simulated on batches not used for fitting, at the stages of the diagnosis.
+/// rms of measured minus simulated on batches not used for fitting, at the levels of the diagnosis.
 struct GapLevels {
   double as_simulated = 0, calibrated = 0, with_effect = 0, noise = 0;
 };
@@ -78,7 +105,8 @@ struct Transfer {
 };
 
 struct Gap {
-  std::string output, unit;
+  std::string output;  ///< empty: all temperatures together
+  std::string unit;    ///< um or K
   GapLevels rms;
   double shrink_percent = 0;                 ///< 100 (1 - with_effect / calibrated)
   Interval shrink_ci95_percent;              ///< from resampling whole batches
@@ -125,30 +153,52 @@ struct Where {
   std::vector<ConditionShare> conditions;
   std::vector<PeriodShare> frequency;
   ChainSplit chain;
-  bool agrees = true;      ///< the effect-free place is one the winning effect can act on
-  std::string difference;  ///< said in words where the two views differ
+  bool agrees = true;          ///< the effect-free place is one the first effect can act on
+  std::string free_place{};    ///< where it is not: the place that explains most without assuming an effect
+  std::string effect_place{};  ///< and the one at which the effect acts
+};
+
+/// What the residual of one channel looks like.
+struct RemainingLook {
+  enum class Kind {
+    too_few,  ///< samples to say
+    noise,
+    shaped,          ///< one or several of the three below
+    louder_noise,    ///< white, but larger than the noise estimate
+    slow_unrecorded  ///< slow changes that follow nothing recorded
+  };
+  std::string channel;  ///< empty: the output of the gap
+  Kind kind = Kind::too_few;
+  double offset_share = 0;  ///< of the square: one value a batch; 0 where it is less than a third
+  double trend_share = 0;   ///< of the square: a straight line in time; 0 where it is less than a third
+  std::string follows;      ///< the recorded course it follows; empty: none
+  double correlation = 0;   ///< with it
+  double lag_min = 0;       ///< behind it
+  double noise = 0;         ///< the noise estimate, in the unit of the gap
 };
 
 /// What is left after the best explanation.
 struct Remaining {
-  bool white = false;         ///< by the cumulated periodogram of the output's residual
-  double unexplained_um = 0;  ///< sqrt(with_effect^2 - noise^2), never negative
-  std::string looks_like;     ///< in words: the input it follows, an offset per batch, slow drift, "noise"
-};
-
-struct PlannedBlock {
-  std::string schedule;  ///< from the menu: "speed stair", "cool-down", …
-  std::string how;       ///< settings in words
-  double machine_hours = 0;
+  bool white = false;      ///< by the cumulated periodogram of the output's residual
+  double unexplained = 0;  ///< sqrt(with_effect^2 - noise^2), never negative, in the unit of the gap
+  std::vector<RemainingLook> looks;
 };
 
 struct NextExperiment {
-  std::vector<std::string> separates;  ///< names of the explanations it tells apart
+  enum class Remark {
+    none,
+    nothing_separates,  ///< no schedule tells the first two of `separates` apart well; a thermometer there would
+    not_foreseeable,    ///< without the network the probability of confusion cannot be given
+    thermometer_near,   ///< add one near `subject`, where the gap lies most
+    not_pinned          ///< the parameter `subject` is not pinned by these data
+  };
+  std::vector<Rival> separates;  ///< the explanations it tells apart
   std::vector<PlannedBlock> plan;
   double expected_confidence = 0;  ///< after the plan, 0…1
   double confusion_before = 0;     ///< probability that the strongest rival is mistaken for the truth
   double confusion_after = 0;
-  std::string why;
+  Remark remark = Remark::none;
+  std::string subject;
 };
 
 /// How far a parameter of the machine moved in calibration.
@@ -169,12 +219,42 @@ struct Support {
   double leaves = 0;           ///< squared gap beyond expectation, in units of what is expected
 };
 
-/// A fault of the data seen on the way: stuck sensor, gaps, an input that never changes.
+/// A fault of the data seen on the way.
 struct DataProblem {
-  std::string place, what;
+  enum class Kind {
+    not_measured,   ///< thermometers of the machine file that the batches lack
+    not_modelled,   ///< thermometers of the batches that the machine file lacks; left out
+    not_simulated,  ///< channels of the batches that the simulator's output lacks; left out
+    not_paired,     ///< a batch without a simulated counterpart; left out
+    resampled,      ///< sampling differs: simulated values are read off at measured times
+    finding         ///< of a rule on single batches (findings/): stuck, spike, gap, …
+  };
+  Kind kind = Kind::finding;
+  std::vector<std::string> names;  ///< channels, or a batch
+  std::string batch, channel;      ///< of a finding
+  std::string rule, note;          ///< of a finding
+};
+
+/// What these data do not allow to say.
+struct WeakerClaim {
+  enum class Kind {
+    one_batch,        ///< nothing can be judged on data not used for fitting
+    few_batches,      ///< held-out figures rest on few
+    constant_input,   ///< `subject` never changes
+    lone_input,       ///< `subject` is on in `batch` alone
+    no_network,       ///< no power, no place between the thermometers, no machine with the effect
+    no_ambient,       ///< effects of the room cannot be told apart
+    no_displacement,  ///< expansion and probe were not looked at
+    gap_beside        ///< a gap without a name remains in `names`
+  };
+  Kind kind = Kind::one_batch;
+  std::string subject, batch;
+  std::vector<std::string> names;
+  std::size_t batches = 0;
 };
 
 struct Diagnosis {
+  SimulatorKind simulator = SimulatorKind::network;
   std::string machine;
   std::vector<std::string> batches;
   Verdict verdict = Verdict::unknown;
@@ -184,11 +264,12 @@ struct Diagnosis {
   Remaining remaining;
   NextExperiment next_experiment;
   std::vector<RuledOut> ruled_out;
-  Support grounds;
+  Support support;
   std::vector<CalibrationMove> calibration;  ///< largest move first
   std::vector<DataProblem> data_problems;
-  std::vector<std::string> weaker_claims;  ///< what these data do not allow to say, and why
-  std::string mode = "network";            ///< "network" or "paired"
+  std::vector<WeakerClaim> weaker_claims;
+  /// The machine calibrated, with the effects found; without nodes where the simulator was not a network.
+  ThermalNetwork with_effects;
 };
 
 }  // namespace thermfit

@@ -7,6 +7,7 @@
 
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/network/schedule.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit {
@@ -124,6 +125,21 @@ class Effect {
   /// Its parameters for this place, in the order in which the law receives them. Throws Error on an unknown place.
   virtual std::vector<EffectParameter> parameters(const ThermalNetwork& network,
                                                   const ThermalNetwork::AddedEffect& added) const = 0;
+  virtual std::string meaning() const { return {}; }
+  virtual bool calibration_does_the_same() const { return name() == "sensor-offset"; }
+  virtual std::string disturbs(const ThermalNetwork::AddedEffect& added) const { return name() == "clock-offset" ? "clock" : name() == "initial-gradient" ? "start" : added.location; }
+  virtual PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const {
+    const std::string n = name();
+    const auto of = [&](std::initializer_list<const char*> l) { for (auto x : l) if (n == x) return true; return false; };
+    PlannedBlock b;
+    b.machine_hours = 1.5 * batch_hours;
+    if (of({"sensor-offset", "sensor-gain", "sensor-drift", "sensor-lag"})) { b.kind = ScheduleKind::sensor_swap; b.subject = where.location; b.machine_hours = batch_hours; }
+    else if (of({"friction-law", "forced-convection", "speed-shift", "joint-conductance"})) { b.kind = ScheduleKind::speed_stair; b.machine_hours = 1.25 * batch_hours; }
+    else if (of({"probe-drift", "ambient-drift", "missing-link"})) { b.kind = ScheduleKind::idle_day; b.machine_hours = 4 * batch_hours; }
+    else if (of({"coolant", "heat-source"}) && !where.driver.empty() && where.driver != "constant") { b.kind = ScheduleKind::toggle; b.subject = where.driver; b.machine_hours = batch_hours; }
+    else if (of({"initial-gradient"})) { b.kind = ScheduleKind::repeat; b.machine_hours = batch_hours; }
+    return b;
+  }
   /// Adds its law to the system: see thermal_system.hpp for what can be added.
   virtual void act(ThermalSystem& system, const ThermalNetwork& network,
                    const ThermalNetwork::AddedEffect& added) const = 0;

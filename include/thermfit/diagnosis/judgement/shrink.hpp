@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -17,7 +18,11 @@ struct BatchSquares {
   Vector sum;    ///< by batch
   Vector count;  ///< values by batch
 
-  double rms() const { return count.sum() > 0 ? std::sqrt(sum.sum() / count.sum()) : 0; }
+  template <typename Scalar = double>
+  double rms() const {
+    const VectorX<Scalar>&squares = sum, &counts = count;
+    return counts.sum() > 0 ? std::sqrt(squares.sum() / counts.sum()) : 0;
+  }
   /// NaN for a batch without values.
   double rms(Index batch) const { return count(batch) > 0 ? std::sqrt(sum(batch) / count(batch)) : std::nan(""); }
 };
@@ -37,11 +42,12 @@ inline double shrink_of_explainable_percent(double calibrated, double with_effec
 /// Interval of the shrink from drawing whole batches with replacement: samples of a batch are not independent, batches
 /// nearly are. Expanded percentiles of `draws` resamples (Hesterberg 2015): the resamples of n batches scatter by
 /// sqrt((n - 1) / n) too little, and what scatter n batches show is itself uncertain as Student's t says.
-inline Interval shrink_interval(const BatchSquares& calibrated, const BatchSquares& with_effect, double coverage,
-                                std::uint64_t seed, int draws = 2000) {
+template <typename Scalar = double>
+Interval shrink_interval(const BatchSquares& calibrated, const BatchSquares& with_effect, double coverage,
+                         std::uint64_t seed, int draws = 2000) {
   const Index n = calibrated.sum.size();
   const double middle = shrink_percent(calibrated.rms(), with_effect.rms());
-  if (n < 2) return {-INFINITY, 100};
+  if (n < 2) return {-std::numeric_limits<double>::infinity(), 100};
   std::mt19937_64 random(seed);
   std::vector<double> shrinks;
   for (int d = 0; d < draws; ++d) {

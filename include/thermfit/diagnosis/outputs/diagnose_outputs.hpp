@@ -32,8 +32,8 @@ namespace detail {
 /// The state of a paired diagnosis between its steps.
 class PairedDiagnosis {
  public:
-  PairedDiagnosis(const Campaign& real, const Campaign& sim, const PairedOptions& options)
-      : options_(options), campaign_(pair_campaigns(real, sim, options.room)), drives_(campaign_) {}
+  PairedDiagnosis(const Campaign& real, const Campaign& sim, const EffectLibrary& library, const PairedOptions& options)
+      : options_(options), library_(library), campaign_(pair_campaigns(real, sim, options.room)), drives_(campaign_) {}
 
   Diagnosis run() {
     start();
@@ -64,8 +64,7 @@ class PairedDiagnosis {
   }
 
   void start() {
-    result_.mode = "paired";
-    result_.machine = "";
+    result_.simulator = SimulatorKind::outputs;
     for (const PairedBatch& batch : campaign_.batches) result_.batches.push_back(batch.name);
     std::vector<double> looseness;
     for (Index c = 0; c < campaign_.channel_count(); ++c) {
@@ -151,7 +150,7 @@ class PairedDiagnosis {
     std::vector<Suspect> found;
     for (const SignatureScore& score : scores_) {
       const PairedSignature& signature = signatures_[score.signature];
-      if (!score.implausible.empty()) continue;
+      if (score.implausible) continue;
       const std::string location = location_of(score);
       const bool known = std::any_of(found.begin(), found.end(), [&](const Suspect& one) {
         return one.effect == signature.effect && one.location == location && one.driver == signature.driver;
@@ -193,7 +192,15 @@ class PairedDiagnosis {
       channels_ = before;
       return false;
     }
-    FoundEffect effect{best.effect, best.location, best.driver, 0, signature.shape, {}, {}};
+    FoundEffect effect{best.effect,
+                       best.location,
+                       best.driver,
+                       0,
+                       signature.shape,
+                       {},
+                       {},
+                       "",
+                       library_.at(signature.effect).calibration_does_the_same()};
     for (const Suspect& one : found) {
       const bool same = one.effect == best.effect && one.driver == best.driver;
       if (same) effect.confidence += one.probability;
@@ -256,19 +263,18 @@ class PairedDiagnosis {
       if (one.probability >= .05 || std::count(named.begin(), named.end(), one.effect) > 0) continue;
       named.push_back(one.effect);
       if (one.effect == found[0].effect) continue;
-      result_.ruled_out.push_back(
-          {one.effect, one.location,
-           one.score->gain < options_.decisive_nats
-               ? "no better than calibration (" + fixed_text(std::max(0., one.score->gain), 0) + " nats)"
-               : fixed_text(found[0].score->gain - one.score->gain, 0) + " nats behind the best"});
+      const bool no_better = one.score->gain < options_.decisive_nats;
+      result_.ruled_out.push_back({one.effect, one.location, no_better ? RuledOutBy::calibration : RuledOutBy::evidence,
+                                   no_better ? one.score->gain : found[0].score->gain - one.score->gain});
     }
     for (const SignatureScore& score : scores_) {
       const PairedSignature& signature = signatures_[score.signature];
-      if (score.implausible.empty() || std::count(named.begin(), named.end(), signature.effect) > 0) continue;
+      if (!score.implausible || std::count(named.begin(), named.end(), signature.effect) > 0) continue;
       if (std::any_of(found.begin(), found.end(), [&](const Suspect& one) { return one.effect == signature.effect; }))
         continue;
       named.push_back(signature.effect);
-      result_.ruled_out.push_back({signature.effect, location_of(score), score.implausible});
+      result_.ruled_out.push_back(
+          {signature.effect, location_of(score), *score.implausible, score.channels[0].coefficients(0)});
     }
   }
 
@@ -290,9 +296,9 @@ class PairedDiagnosis {
   bool told_gap_shrinks() const {
     Diagnosis trial;
     trial.effects = result_.effects;
-    OutputViews(campaign_, first_, channels_, told_, options_.seed).tell(trial);
+    OutputViews(campaign_, library_, first_, channels_, told_, options_.seed).tell(trial);
     const GapLevels& rms = trial.gap.rms;
-    return rms.with_effect < (trial.effects[0].effect == "sensor-offset" ? rms.as_simulated : rms.calibrated);
+    return rms.with_effect < (trial.effects[0].against_as_given ? rms.as_simulated : rms.calibrated);
   }
 
   /// What a thermometer may be off because of where it sits; beside a gap without a name, smaller faults are not told.
@@ -309,17 +315,26 @@ class PairedDiagnosis {
       const bool sensor = signature.stage == Stage::measurement && signature.channels.size() == 1 &&
                           signature.channels[0] < campaign_.temperatures;
       if (score.gain < options_.decisive_nats) break;
-      if (!sensor || !score.implausible.empty() || score.channels[0].contribution < placement_tolerance_K) continue;
+      if (!sensor || score.implausible || score.channels[0].contribution < placement_tolerance_K) continue;
       const Index own = signature.channels[0];
       std::vector<Suspect> rivals = candidates_in(own);
       if (rivals.empty() || rivals[0].score != &score) continue;
-      const double before = signature.effect == "sensor-offset" ? channel(own).as_simulated : channel(own).calibrated;
+      const double before = library_.at(signature.effect).calibration_does_the_same() ? channel(own).as_simulated
+                                                                                      : channel(own).calibrated;
       add_to_basis(signature);
       if (channel(own).calibrated > .67 * before) {
         channels_ = first_;
         continue;
       }
-      FoundEffect effect{signature.effect, name(own), "", rivals[0].probability, signature.shape, {}, {}};
+      FoundEffect effect{signature.effect,
+                         name(own),
+                         "",
+                         rivals[0].probability,
+                         signature.shape,
+                         {},
+                         {},
+                         "",
+                         library_.at(signature.effect).calibration_does_the_same()};
       for (std::size_t i = 1; i < rivals.size(); ++i)
         if (rivals[i].probability >= .05 && rivals[i].effect != signature.effect)
           effect.alternatives.push_back(
@@ -342,7 +357,7 @@ class PairedDiagnosis {
     std::vector<double> gains;
     for (const SignatureScore& score : scores_)
       for (const ChannelScore& part : score.channels) {
-        if (part.channel != own || !score.implausible.empty()) continue;
+        if (part.channel != own || score.implausible) continue;
         const PairedSignature& signature = signatures_[score.signature];
         std::size_t at = 0;
         while (at < found.size() && found[at].effect != signature.effect) ++at;
@@ -376,29 +391,30 @@ class PairedDiagnosis {
     } else if (leaves_too_much() || !told_gap_shrinks()) {
       const FoundEffect& nearest = result_.effects[0];
       result_.verdict = Verdict::unknown;
-      result_.ruled_out.insert(result_.ruled_out.begin(), {nearest.effect, nearest.location,
-                                                           "comes nearest, but leaves too much on batches left out"});
+      result_.ruled_out.insert(result_.ruled_out.begin(), {nearest.effect, nearest.location, RuledOutBy::remains});
       result_.effects.clear();
     } else {
       result_.verdict = result_.effects[0].alternatives.empty() ? Verdict::effect : Verdict::ambiguous;
     }
-    std::string beside;
+    std::vector<std::string> beside;
     if (result_.verdict == Verdict::unknown && name_sensor_fault()) {
       result_.verdict = result_.effects[0].alternatives.empty() ? Verdict::effect : Verdict::ambiguous;
       for (Index c = 0; c < campaign_.channel_count(); ++c)
         if (c != told_ && campaign_.is_output(c) && channel(c).calibrated > 2 * channel(c).noise)
-          beside += (beside.empty() ? "" : ", ") + name(c);
+          beside.push_back(name(c));
     }
     if (campaign_.batches.size() < 3 && !result_.effects.empty()) {
       result_.verdict = Verdict::ambiguous;  // a suspicion: too few batches to judge by
       for (FoundEffect& one : result_.effects) one.confidence = std::min(one.confidence, .5);
     }
-    OutputViews(campaign_, first_, channels_, told_, options_.seed).tell(result_);
-    if (!beside.empty()) result_.weaker_claims.push_back("beside it a gap without a name remains in " + beside);
+    OutputViews(campaign_, library_, first_, channels_, told_, options_.seed).tell(result_);
+    if (!beside.empty())
+      result_.weaker_claims.push_back({WeakerClaim::Kind::gap_beside, "", "", beside, campaign_.batches.size()});
     if (!result_.effects.empty()) result_.where.stages.push_back({word_of(stage_), 1});
   }
 
   PairedOptions options_;
+  const EffectLibrary& library_;
   PairedCampaign campaign_;
   Drives drives_;
   std::vector<PairedChannel> channels_;
@@ -419,8 +435,9 @@ class PairedDiagnosis {
 /// contribution, learnt from the simulated courses) is free in every comparison. An effect is named when its evidence
 /// beats calibration by `decisive_nats`; the gap before and after is that of batches left out. Throws Error when the
 /// two sides do not pair.
-inline Diagnosis diagnose_paired(const Campaign& real, const Campaign& sim, const PairedOptions& options = {}) {
-  return detail::PairedDiagnosis(real, sim, options).run();
+inline Diagnosis diagnose_paired(const Campaign& real, const Campaign& sim, const EffectLibrary& library,
+                                 const PairedOptions& options = {}) {
+  return detail::PairedDiagnosis(real, sim, library, options).run();
 }
 
 }  // namespace thermfit

@@ -30,7 +30,9 @@ struct PairedCampaign {
   bool room_is_simulated = false;  ///< the simulator used the measured ambient
   bool zeroed = true;              ///< displacements count from their first sample
   std::vector<PairedBatch> batches;
-  std::vector<std::string> remarks;  ///< what was done to make them comparable
+  std::vector<std::string> not_simulated;  ///< temperatures that were measured only; left out
+  std::vector<std::string> not_paired;     ///< batches without a simulated counterpart; left out
+  bool resampled = false;                  ///< simulated values were read off at measured times
 
   Index channel_count() const { return static_cast<Index>(channels.size()); }
   /// Whether the simulator is answerable for a channel; the ambient is an input.
@@ -122,7 +124,7 @@ inline PairedBatch pair(const Batch& real, const Batch& sim, const PairedCampaig
 
 }  // namespace detail
 
-/// Pairs batches by name. Channels that only one side has are left out with a remark; simulated courses are read off
+/// Pairs batches by name. Channels that only one side has are left out and told; simulated courses are read off
 /// linearly at the measured samples, within the time both cover. `room` names the ambient temperature; empty: the
 /// column in which measured and simulated agree to .006 K, if there is exactly one. Throws Error when no batch or no
 /// channel pairs, when a batch has no clock, or has missing values.
@@ -141,25 +143,21 @@ inline PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, 
   if (result.channels.empty())
     throw Error(sim[0].source.empty() ? "simulated batches" : sim[0].source, "no channel of the measured batches",
                 "columns with the same names on both sides", "rename them or set --temperatures and --errors");
-  std::string unpaired;
   for (const std::string& name : real[0].temperatures.names)
-    if (sim[0].temperatures.find(name) < 0) unpaired += (unpaired.empty() ? "" : ", ") + name;
-  if (!unpaired.empty()) result.remarks.push_back(unpaired + ": measured but not simulated; left out");
+    if (sim[0].temperatures.find(name) < 0) result.not_simulated.push_back(name);
 
-  bool resampled = false;
   for (const Batch& batch : real) {
     const auto same =
         std::find_if(sim.begin(), sim.end(), [&](const Batch& other) { return other.name == batch.name; });
     if (same == sim.end()) {
-      result.remarks.push_back("batch " + batch.name + " has no simulated counterpart; left out");
+      result.not_paired.push_back(batch.name);
       continue;
     }
-    result.batches.push_back(detail::pair(batch, *same, result, resampled));
+    result.batches.push_back(detail::pair(batch, *same, result, result.resampled));
   }
   if (result.batches.empty())
     throw Error("--sim", "no simulated batch has the name of a measured one", "files with equal names on both sides",
                 "the first measured batch is " + real[0].name + ", the first simulated " + sim[0].name);
-  if (resampled) result.remarks.push_back("sampling differs: simulated values are read off linearly at measured times");
 
   std::vector<std::string> copies, held;
   for (Index c = 0; c < result.temperatures; ++c) {

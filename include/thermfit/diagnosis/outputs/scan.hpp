@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "thermfit/diagnosis/outputs/paired_channel.hpp"
 #include "thermfit/diagnosis/outputs/signatures.hpp"
-#include "thermfit/number.hpp"
 
 namespace thermfit {
 
@@ -27,7 +27,7 @@ struct SignatureScore {
   std::size_t signature = 0;
   double gain = 0;  ///< summed over its channels, nats
   std::vector<ChannelScore> channels;
-  std::string implausible;  ///< why it cannot be its effect; empty where it can
+  std::optional<RuledOutBy> implausible;  ///< why it cannot be its effect; empty where it can
 };
 
 /// Prior of a signature's coefficients where its columns are scaled to rms one: free ones may be three times what the
@@ -95,16 +95,21 @@ inline bool same_node(const PairedCampaign& campaign, Index a, Index b) {
   return true;
 }
 
+/// A law of unit strength may come out this far off it, since its trace is an approximation.
+constexpr double least_strength = .75, most_strength = 1.33;
+/// Share of what the strongest thermometer shows that a heat flow must show where it acts.
+constexpr double shows_here = .4;
+
 /// A law of unit strength must come out with a coefficient near one; a heat exchange between two places must show
 /// most at one of them (or on its node), any other heat flow at least strongly where it acts, with the sign of its law.
-inline std::string why_implausible(const PairedSignature& signature, const SignatureScore& score,
-                                   const PairedCampaign& campaign) {
+inline std::optional<RuledOutBy> why_implausible(const PairedSignature& signature, const SignatureScore& score,
+                                                 const PairedCampaign& campaign) {
   if (signature.unit_strength) {
     const double strength = score.channels[0].coefficients(0);
-    if (strength > .75 && strength < 1.33) return "";
-    return "fits only with a strength of " + fixed_text(strength, 1) + " instead of 1";
+    if (strength > least_strength && strength < most_strength) return std::nullopt;
+    return RuledOutBy::strength;
   }
-  if (signature.acts_on.empty()) return "";
+  if (signature.acts_on.empty()) return std::nullopt;
   const ChannelScore* strongest = strongest_sensor(score, campaign.temperatures);
   bool here = false;
   double directions = 1;
@@ -112,14 +117,14 @@ inline std::string why_implausible(const PairedSignature& signature, const Signa
     here = here || (strongest && same_node(campaign, strongest->channel, channel));
     for (const ChannelScore& one : score.channels) {
       if (one.channel != channel) continue;
-      here = here || (signature.acts_on.size() == 1 && one.contribution > .4 * strongest->contribution);
-      if (sign * one.direction < 0) return "the sensors respond with the wrong sign";
+      here = here || (signature.acts_on.size() == 1 && one.contribution > shows_here * strongest->contribution);
+      if (sign * one.direction < 0) return RuledOutBy::sign;
       directions *= one.direction;
     }
   }
-  if (!here) return "other sensors than its own respond most";
-  if (signature.acts_on.size() == 2 && directions > 0) return "both ends respond with the same sign";
-  return "";
+  if (!here) return RuledOutBy::elsewhere;
+  if (signature.acts_on.size() == 2 && directions > 0) return RuledOutBy::same_sign;
+  return std::nullopt;
 }
 
 inline SignatureScore score_of(std::size_t index, const PairedSignature& signature,

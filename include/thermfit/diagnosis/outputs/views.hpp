@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "thermfit/diagnosis/claims.hpp"
 #include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/diagnosis/judgement/shrink.hpp"
 #include "thermfit/diagnosis/outputs/paired_channel.hpp"
@@ -21,9 +23,9 @@ class OutputViews {
  public:
   /// `first` are the channels with calibration alone, `last` with all effects; `told` is the channel the gap is told
   /// for.
-  OutputViews(const PairedCampaign& campaign, const std::vector<PairedChannel>& first,
+  OutputViews(const PairedCampaign& campaign, const EffectLibrary& library, const std::vector<PairedChannel>& first,
               const std::vector<PairedChannel>& last, Index told, unsigned seed)
-      : campaign_(campaign), first_(first), last_(last), told_(told), seed_(seed) {}
+      : campaign_(campaign), library_(library), first_(first), last_(last), told_(told), seed_(seed) {}
 
   void tell(Diagnosis& result) {
     tell_gap(result);
@@ -33,7 +35,7 @@ class OutputViews {
     for (const PairedBatch& batch : campaign_.batches)
       hours = std::max(hours, batch.time_s(batch.time_s.size() - 1) / 3600);
     result.next_experiment = result.effects.empty() ? experiment_without_rivals(result, hours)
-                                                    : experiment_by_kind(result.effects[0], hours);
+                                                    : experiment_by_kind(result.effects[0], library_, hours);
   }
 
  private:
@@ -123,37 +125,41 @@ class OutputViews {
     for (NamedShare& place : where.places) place.share = sum > 0 ? place.share / sum : 0;
     std::stable_sort(where.places.begin(), where.places.end(),
                      [](const NamedShare& a, const NamedShare& b) { return a.share > b.share; });
-    result.remaining =
-        remaining_gap(measured, last, result.gap.rms.with_effect, result.gap.rms.noise, result.gap.unit, seed_);
+    auto [look, white] = remaining_look(measured, last, result.gap.rms.with_effect, result.gap.rms.noise, seed_);
+    result.remaining = {white, unexplained(result.gap.rms.with_effect, result.gap.rms.noise), {std::move(look)}};
   }
 
-  void tell_limits(Diagnosis& result) const {
-    for (const std::string& remark : campaign_.remarks) result.data_problems.push_back({"pairing", remark});
+  std::vector<std::string> constant_inputs() const {
+    std::vector<std::string> result;
     for (std::size_t i = 0; i < campaign_.inputs.size(); ++i) {
-      double low = 1e300, high = -1e300;
+      double low = std::numeric_limits<double>::infinity(), high = -low;
       for (const PairedBatch& batch : campaign_.batches) {
         low = std::min(low, batch.inputs.col(static_cast<Index>(i)).minCoeff());
         high = std::max(high, batch.inputs.col(static_cast<Index>(i)).maxCoeff());
       }
-      if (low < high) continue;
-      result.data_problems.push_back({campaign_.inputs[i], "never changes: effects it drives look like calibration"});
+      if (!(low < high)) result.push_back(campaign_.inputs[i]);
     }
-    std::vector<std::string>& claims = result.weaker_claims;
-    claims.push_back(
-        "without the network no power in W, no node between the sensors, and no machine with the effect can "
-        "be given; a place is the sensor that responds");
-    if (campaign_.room.empty())
-      claims.push_back("no ambient temperature is known (--ambient NAME): effects of the room cannot be told apart");
-    if (campaign_.batches.size() == 1)
-      claims.push_back("one batch only: the figures are those of the fit itself, nothing is proven on unseen data");
-    else if (campaign_.batches.size() < 4)
-      claims.push_back("only " + std::to_string(campaign_.batches.size()) +
-                       " batches: the interval of the shrink is rough");
+    return result;
+  }
+
+  void tell_limits(Diagnosis& result) const {
+    using Claim = WeakerClaim::Kind;
+    using Problem = DataProblem::Kind;
+    if (!campaign_.not_simulated.empty())
+      result.data_problems.push_back({Problem::not_simulated, campaign_.not_simulated, "", "", "", ""});
+    for (const std::string& batch : campaign_.not_paired)
+      result.data_problems.push_back({Problem::not_paired, {batch}, "", "", "", ""});
+    if (campaign_.resampled) result.data_problems.push_back({Problem::resampled, {}, "", "", "", ""});
+    const std::size_t batches = campaign_.batches.size();
+    result.weaker_claims.push_back({Claim::no_network, "", "", {}, batches});
+    if (campaign_.room.empty()) result.weaker_claims.push_back({Claim::no_ambient, "", "", {}, batches});
+    for (WeakerClaim& one : weaker_claims(batches, constant_inputs())) result.weaker_claims.push_back(std::move(one));
     if (campaign_.temperatures == campaign_.channel_count())
-      claims.push_back("no displacement is paired: expansion and probe effects were not looked for");
+      result.weaker_claims.push_back({Claim::no_displacement, "", "", {}, batches});
   }
 
   const PairedCampaign& campaign_;
+  const EffectLibrary& library_;
   const std::vector<PairedChannel>& first_;
   const std::vector<PairedChannel>& last_;
   Index told_;

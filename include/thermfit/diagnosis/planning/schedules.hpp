@@ -8,22 +8,20 @@
 #include <vector>
 
 #include "thermfit/calibration/machine_record.hpp"
-#include "thermfit/number.hpp"
+#include "thermfit/network/schedule.hpp"
 
 namespace thermfit {
 
+/// A piece of machine time with what would drive the machine in it.
 struct Schedule {
-  std::string name;  ///< "speed stair", "cool-down", …
-  std::string how;   ///< settings in words
+  PlannedBlock block;  ///< hours of one run
   Excitation excitation;
-  std::string swapped, with;  ///< sensors that change places; empty: none
-
-  double hours() const { return excitation.time_s(excitation.samples() - 1) / 3600; }
 };
 
 namespace detail {
 
 /// Schedules for one machine: inputs by the range in which the campaign used them, durations in units of its batches.
+template <typename Scalar = double>
 class Menu {
  public:
   Menu(const ThermalNetwork& network, const MachineRecord& seen) : network_(network), seen_(seen) {
@@ -33,9 +31,11 @@ class Menu {
     std::vector<double> spans, rooms;
     for (const Excitation& one : seen.excitations) {
       spans.push_back(one.time_s(one.samples() - 1));
-      rooms.push_back(one.ambient_degC.mean());
+      const VectorX<Scalar>& room_degC = one.ambient_degC;
+      rooms.push_back(room_degC.mean());
       for (std::size_t i = 0; i < largest_.size(); ++i) {
-        const Vector column = one.inputs.col(static_cast<Index>(i));
+        const MatrixX<Scalar>& inputs = one.inputs;
+        const VectorX<Scalar> column = inputs.col(static_cast<Index>(i));
         largest_[i] = std::max(largest_[i], column.cwiseAbs().maxCoeff());
         varies_[i] = varies_[i] || column.maxCoeff() > column.minCoeff();
       }
@@ -56,44 +56,55 @@ class Menu {
 
   std::vector<Schedule> all() const {
     std::vector<Schedule> menu;
-    const auto add = [&](const std::string& name, const std::string& how, double spans, auto level,
-                         double swing_K = 0) {
-      menu.push_back({name, how, excitation(spans, level, swing_K), "", ""});
-    };
     const double top = main_ >= 0 ? largest_[static_cast<std::size_t>(main_)] : 0;
     if (top > 0) {
-      const std::string speed = input_name(main_), most = general_text(top, 5);
-      add("speed stair", speed + " at 25, 50, 75 and 100 % of " + most + ", then 0", 1.25,
-          [&](Index input, double share) {
-            return input == main_ && share < .8 ? top * .25 * std::floor(1 + 5 * share) : 0.;
-          });
-      add("single high speed", speed + " at " + most + " from cold", .75,
-          [&](Index input, double) { return input == main_ ? top : 0.; });
-      add("cool-down", speed + " at " + most + ", then 0 for twice as long", 1.5,
-          [&](Index input, double share) { return input == main_ && share < 1. / 3 ? top : 0.; });
-      for (Index other = 0; other < static_cast<Index>(largest_.size()); ++other) {
-        const double level = largest_[static_cast<std::size_t>(other)];
-        if (other == main_ || level == 0) continue;
-        const std::string word = input_name(other);
-        if (level <= 1)
-          add(word + " toggle", speed + " at half of " + most + ", " + word + " on and off in six equal pieces", 1,
-              [&, other, level](Index input, double share) {
-                if (input == other) return static_cast<int>(6 * share) % 2 ? level : 0.;
-                return input == main_ ? .5 * top : 0.;
-              });
-        else
-          add(word + " only", word + " at " + general_text(level, 5) + ", everything else off, then a pause", 1,
-              [&, other, level](Index input, double share) { return input == other && share < 2. / 3 ? level : 0.; });
-      }
+      const std::string& speed = input_name(main_);
+      menu.push_back(planned({ScheduleKind::speed_stair, separates, speed, "", "", top, 1, 0}, 1.25,
+                             [&](Index input, double share) {
+                               return input == main_ && share < .8 ? top * .25 * std::floor(1 + 5 * share) : 0.;
+                             }));
+      menu.push_back(planned({ScheduleKind::single_high_speed, separates, speed, "", "", top, 1, 0}, .75,
+                             [&](Index input, double) { return input == main_ ? top : 0.; }));
+      menu.push_back(planned({ScheduleKind::cool_down, separates, speed, "", "", top, 1, 0}, 1.5,
+                             [&](Index input, double share) { return input == main_ && share < 1. / 3 ? top : 0.; }));
+      for (Index other = 0; other < static_cast<Index>(largest_.size()); ++other)
+        if (other != main_ && largest_[static_cast<std::size_t>(other)] != 0) menu.push_back(of_another(other, top));
     }
-    add(
-        "idle day", "everything off while the room swings by 6 K", 4, [](Index, double) { return 0.; }, 3);
+    menu.push_back(planned(
+        {ScheduleKind::idle_day, separates, "", "", "", 0, 1, 0}, 4, [](Index, double) { return 0.; }, room_swing_K));
     if (!seen_.excitations.empty())
-      menu.push_back({"repeat", "batch " + seen_.names[0] + " once more", seen_.excitations[0], "", ""});
+      menu.push_back(again({ScheduleKind::repeat, separates, "", "", seen_.names[0], 0, 1, 0}, seen_.excitations[0]));
     return menu;
   }
 
+  /// A batch of the campaign once more.
+  static Schedule again(PlannedBlock block, const Excitation& batch) {
+    block.machine_hours = batch.time_s(batch.samples() - 1) / 3600;
+    return {std::move(block), batch};
+  }
+
  private:
+  static constexpr SchedulePurpose separates = SchedulePurpose::separates;
+  static constexpr double room_swing_K = 3;  ///< either way, on an idle day
+
+  /// An on-off input toggled while the main one runs at half; any other alone.
+  Schedule of_another(Index other, double top) const {
+    const double level = largest_[static_cast<std::size_t>(other)];
+    if (level <= 1)
+      return planned({ScheduleKind::toggle, separates, input_name(other), input_name(main_), "", top, 1, 0}, 1,
+                     [&](Index input, double share) {
+                       if (input == other) return static_cast<int>(6 * share) % 2 ? level : 0.;
+                       return input == main_ ? .5 * top : 0.;
+                     });
+    return planned({ScheduleKind::only, separates, input_name(other), "", "", level, 1, 0}, 1,
+                   [&](Index input, double share) { return input == other && share < 2. / 3 ? level : 0.; });
+  }
+
+  template <class Level>
+  Schedule planned(PlannedBlock block, double spans, Level level, double swing_K = 0) const {
+    return again(std::move(block), excitation(spans, level, swing_K));
+  }
+
   const std::string& input_name(Index input) const {
     return seen_.excitations[0].input_names[static_cast<std::size_t>(input)];
   }
@@ -104,18 +115,20 @@ class Menu {
     constexpr Index samples = 121;
     Excitation result;
     result.batch = "planned";
-    result.time_s = Vector::LinSpaced(samples, 0, spans * span_s_);
+    const VectorX<Scalar> time_s = VectorX<Scalar>::LinSpaced(samples, 0, spans * span_s_);
+    result.time_s = time_s;
     result.input_names = seen_.excitations[0].input_names;
     result.inputs.resize(samples, static_cast<Index>(largest_.size()));
     for (Index k = 0; k < samples; ++k)
       for (Index i = 0; i < result.inputs.cols(); ++i)
         result.inputs(k, i) = level(i, static_cast<double>(k) / static_cast<double>(samples));
     result.measured_ambient_degC =
-        room_degC_ + swing_K * (2 * 3.14159265358979 * result.time_s.array() / result.time_s(samples - 1)).sin();
+        room_degC_ + swing_K * (2 * 3.14159265358979 * time_s.array() / time_s(samples - 1)).sin();
     const bool held = network_.ambient.rule != ThermalNetwork::Ambient::Rule::column;
-    result.ambient_degC = held ? Vector::Constant(samples, room_degC_) : result.measured_ambient_degC;
+    result.ambient_degC = result.measured_ambient_degC;
+    if (held) result.ambient_degC = VectorX<Scalar>::Constant(samples, room_degC_);
     if (seen_.excitations[0].measured_ambient_degC.size() == 0) result.measured_ambient_degC.resize(0);
-    result.start_degC = Vector::Constant(network_.node_count(), room_degC_);
+    result.start_degC = VectorX<Scalar>::Constant(network_.node_count(), room_degC_);
     result.start_sensors.resize(static_cast<std::size_t>(network_.node_count()));
     return result;
   }
@@ -132,27 +145,28 @@ class Menu {
 
 /// `network` with the thermometers of `schedule` exchanged: a fault goes with its thermometer to the other's place.
 inline ThermalNetwork with_swap(ThermalNetwork network, const Schedule& schedule) {
+  if (schedule.block.kind != ScheduleKind::sensor_swap) return network;
   for (ThermalNetwork::AddedEffect& added : network.effects)
-    if (added.location == schedule.swapped)
-      added.location = schedule.with;
-    else if (added.location == schedule.with)
-      added.location = schedule.swapped;
+    if (added.location == schedule.block.subject)
+      added.location = schedule.block.beside;
+    else if (added.location == schedule.block.beside)
+      added.location = schedule.block.subject;
   return network;
 }
 
 /// For every thermometer among `suspects`: a batch repeated after it has changed places with another node's.
-inline std::vector<Schedule> sensor_swaps(const ThermalNetwork& network, const MachineRecord& seen,
-                                          const std::vector<std::string>& suspects) {
+template <typename Scalar = double>
+std::vector<Schedule> sensor_swaps(const ThermalNetwork& network, const MachineRecord& seen,
+                                   const std::vector<std::string>& suspects) {
   std::vector<Schedule> result;
   for (const ThermalNetwork::Sensor& own : network.sensors) {
     if (own.node < 0 || std::find(suspects.begin(), suspects.end(), own.column) == suspects.end()) continue;
     for (const ThermalNetwork::Sensor& other : network.sensors) {
       if (other.node < 0 || other.node == own.node) continue;
       if (std::find(suspects.begin(), suspects.end(), other.column) != suspects.end()) continue;
-      result.push_back({"sensor swap",
-                        "exchange " + own.column + " and " + other.column + ", then batch " + seen.names[0] +
-                            " once more: a faulty thermometer takes its fault along",
-                        seen.excitations[0], own.column, other.column});
+      result.push_back(detail::Menu<Scalar>::again(
+          {ScheduleKind::sensor_swap, SchedulePurpose::separates, own.column, other.column, seen.names[0], 0, 1, 0},
+          seen.excitations[0]));
       break;
     }
   }
@@ -161,8 +175,9 @@ inline std::vector<Schedule> sensor_swaps(const ThermalNetwork& network, const M
 
 /// Speed stair, single high speed, cool-down, the other inputs alone or toggled, idle day, repeat; those that the
 /// campaign's inputs allow. Needs one batch at least.
-inline std::vector<Schedule> experiment_menu(const ThermalNetwork& network, const MachineRecord& seen) {
-  return detail::Menu(network, seen).all();
+template <typename Scalar = double>
+std::vector<Schedule> experiment_menu(const ThermalNetwork& network, const MachineRecord& seen) {
+  return detail::Menu<Scalar>(network, seen).all();
 }
 
 }  // namespace thermfit

@@ -8,15 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "thermfit/diagnosis/search/account.hpp"
+#include "thermfit/diagnosis/search/refits.hpp"
 #include "thermfit/effects/place.hpp"
 
 namespace thermfit::detail {
-
-inline void best_first(std::vector<Account>& explanations) {
-  std::stable_sort(explanations.begin(), explanations.end(),
-                   [](const Account& a, const Account& b) { return plausibility(a) > plausibility(b); });
-}
 
 /// Adds an account of one effect, most plausible first; of two with the same effect at the same place the better stays.
 inline void keep_better(std::vector<Account>& accounts, Account&& account) {
@@ -30,14 +25,15 @@ inline void keep_better(std::vector<Account>& accounts, Account&& account) {
 }
 
 /// Walks from place to place: the catalogue's list of places is coarse.
+template <typename Scalar = double>
 class PlaceWalk {
  public:
   /// Over the accounts, most plausible first, of which the leader's effect `position` is to find its place; it becomes
   /// the last effect of the accounts tried.
   /// `screened` is what the catalogue lists; the machine alone has `own` coordinates.
-  PlaceWalk(const SearchContext& inquiry, const std::vector<Candidate>& screened, Index own,
+  PlaceWalk(const SearchContext& context, const std::vector<Candidate>& screened, Index own,
             std::vector<Account>& accounts, std::size_t position, const MapFitOptions& refit)
-      : inquiry_(inquiry), screened_(screened), own_(own), accounts_(accounts), position_(position), refit_(refit) {}
+      : context_(context), screened_(screened), own_(own), accounts_(accounts), position_(position), refit_(refit) {}
 
   /// At most `most_steps` steps to the best set of nodes, or pair, around the leader; at each, all nodes whose coming
   /// or going helped are tried together too.
@@ -45,7 +41,7 @@ class PlaceWalk {
     for (int step = 0; step < most_steps; ++step) {
       leader_ = accounts_.front();
       std::vector<Candidate> near;
-      for (const std::string& place : places_beside(inquiry_.machine, moving().location))
+      for (const std::string& place : places_beside(context_.machine, moving().location))
         if (allowed(place) && !tried(place)) near.push_back(at(place));
       std::vector<Account> reached = refitted(near, 1, 2);
       const auto [place, steps] = together(reached);
@@ -72,7 +68,7 @@ class PlaceWalk {
     const bool takes_sets = std::any_of(screened_.begin(), screened_.end(), [&](const Candidate& one) {
       return one.added.effect == moving().effect && one.added.location.find('+') != std::string::npos;
     });
-    return (set && takes_sets && inquiry_.library.accepts(inquiry_.machine, at(place).added)) || listed(place);
+    return (set && takes_sets && context_.library.accepts(context_.machine, at(place).added)) || listed(place);
   }
   bool tried(const std::string& place) const {
     ThermalNetwork::AddedEffect moved = moving();
@@ -87,13 +83,14 @@ class PlaceWalk {
     Candidate one;
     one.added = moving();
     one.added.location = place;
-    one.start = leader_.fit.coordinates.head(own_);
+    const VectorX<Scalar>& coordinates = leader_.fit.coordinates;
+    one.start = coordinates.head(own_);
     return one;
   }
   std::vector<Account> refitted(const std::vector<Candidate>& chosen, int steps, std::size_t to_the_end) const {
     std::vector<ThermalNetwork::AddedEffect> kept = leader_.effects;
     kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(position_));
-    std::vector<Account> result = refits(inquiry_, chosen, kept, leader_.fit, refit_, to_the_end);
+    std::vector<Account> result = refits<Scalar>(context_, chosen, kept, leader_.fit, refit_, to_the_end);
     for (Account& one : result) one.steps = listed(one.effects.back().location) ? 0 : leader_.steps + steps;
     return result;
   }
@@ -105,10 +102,10 @@ class PlaceWalk {
       const std::string& place = one.effects.back().location;
       if (plausibility(one) <= plausibility(leader_) || (place != "all" && place.find('+') == std::string::npos))
         continue;
-      const std::vector<Index> before = nodes_at(inquiry_.machine, moving().location);
-      const std::vector<Index> after = nodes_at(inquiry_.machine, place);
+      const std::vector<Index> before = nodes_at(context_.machine, moving().location);
+      const std::vector<Index> after = nodes_at(context_.machine, place);
       if (++helped == 1) nodes = before;
-      for (Index i = 0; i < inquiry_.machine.node_count(); ++i) {
+      for (Index i = 0; i < context_.machine.node_count(); ++i) {
         const bool was = std::count(before.begin(), before.end(), i) > 0,
                    is = std::count(after.begin(), after.end(), i) > 0;
         if (!was && is) nodes.push_back(i);
@@ -117,10 +114,10 @@ class PlaceWalk {
     }
     if (nodes.empty()) return {"", 0};
     std::sort(nodes.begin(), nodes.end());
-    return {place_of(inquiry_.machine, nodes), helped};
+    return {place_of(context_.machine, nodes), helped};
   }
 
-  const SearchContext& inquiry_;
+  const SearchContext& context_;
   const std::vector<Candidate>& screened_;
   const Index own_;
   std::vector<Account>& accounts_;

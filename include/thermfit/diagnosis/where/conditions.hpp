@@ -84,21 +84,26 @@ void add_factor(const std::string& name, const Campaign& batches, const std::vec
 
 }  // namespace detail
 
+/// Slopes below this share of the steepest count as steady.
+constexpr double steady_share = .15;
+
 enum class ThermalPhase { warm_up, steady, cool_down };
 
 /// The phase of every sample by the slope of the mean temperature over about a twentieth of the batch; slopes below 15
 /// % of the steepest count as steady. Without temperatures or time everything is steady.
-inline std::vector<ThermalPhase> thermal_phases(const Batch& batch) {
+template <typename Scalar = double>
+std::vector<ThermalPhase> thermal_phases(const Batch& batch) {
   const Index rows = batch.rows(), half = std::max<Index>(1, rows / 40);
   std::vector<ThermalPhase> phases(static_cast<std::size_t>(rows), ThermalPhase::steady);
   if (!batch.has_time() || batch.temperatures.count() == 0 || rows < 3) return phases;
-  const Vector mean_degC = batch.temperatures.values.rowwise().mean();
-  Vector slope(rows);
+  const MatrixX<Scalar>& temperatures = batch.temperatures.values;
+  const VectorX<Scalar> mean_degC = temperatures.rowwise().mean();
+  VectorX<Scalar> slope(rows);
   for (Index row = 0; row < rows; ++row) {
     const Index first = std::max<Index>(0, row - half), last = std::min(rows - 1, row + half);
     slope(row) = (mean_degC(last) - mean_degC(first)) / (batch.time_s(last) - batch.time_s(first));
   }
-  const double threshold = .15 * slope.cwiseAbs().maxCoeff();
+  const double threshold = steady_share * slope.cwiseAbs().maxCoeff();
   for (Index row = 0; row < rows; ++row)
     if (std::abs(slope(row)) > threshold)
       phases[static_cast<std::size_t>(row)] = slope(row) > 0 ? ThermalPhase::warm_up : ThermalPhase::cool_down;
@@ -108,8 +113,9 @@ inline std::vector<ThermalPhase> thermal_phases(const Batch& batch) {
 /// Shares of sum(residual^2) by input (on/off or up to three ranges), by ambient where `ambient_column` names a
 /// temperature, by phase and by batch. `residuals[b]` belongs to `batches[b]`, one value a row; within a factor the
 /// shares add up to one.
-inline std::vector<ConditionShare> condition_shares(const Campaign& batches, const std::vector<Vector>& residuals,
-                                                    const std::string& ambient_column = {}) {
+template <typename Scalar = double>
+std::vector<ConditionShare> condition_shares(const Campaign& batches, const std::vector<Vector>& residuals,
+                                             const std::string& ambient_column = {}) {
   std::vector<ConditionShare> result;
   if (batches.empty()) return result;
   for (Index i = 0; i < batches[0].inputs.count(); ++i)

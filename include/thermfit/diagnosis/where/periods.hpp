@@ -13,10 +13,11 @@ namespace thermfit {
 
 /// Orthonormal DCT-II coefficients of `series`: their squares add up to its square. Coefficient k has the period
 /// 2 duration / k; coefficient 0 is the offset. The even extension keeps a trend from leaking into short periods.
-inline Vector cosine_coefficients(const Vector& series) {
+template <typename Scalar = double>
+VectorX<Scalar> cosine_coefficients(const VectorX<Scalar>& series) {
   const Index count = series.size();
   constexpr double pi = 3.14159265358979323846;
-  Vector result(count);
+  VectorX<Scalar> result(count);
   for (Index k = 0; k < count; ++k) {
     double sum = 0;
     for (Index i = 0; i < count; ++i)
@@ -29,8 +30,8 @@ inline Vector cosine_coefficients(const Vector& series) {
 
 /// Shares of the square of the gap by period, longest last; an offset that lasts the whole batch has the period
 /// infinity. Bands without content are left out. `times_s[b]` and `residuals[b]` belong together.
-inline std::vector<PeriodShare> period_shares(const std::vector<Vector>& times_s,
-                                              const std::vector<Vector>& residuals) {
+template <typename Scalar = double>
+std::vector<PeriodShare> period_shares(const std::vector<Vector>& times_s, const std::vector<Vector>& residuals) {
   constexpr double forever = std::numeric_limits<double>::infinity();
   const std::vector<double> edges_min{0, 1, 3, 10, 30, 100, 300, 1000, 3000, forever};
   std::vector<double> squares(edges_min.size(), 0);
@@ -40,9 +41,11 @@ inline std::vector<PeriodShare> period_shares(const std::vector<Vector>& times_s
     if (rows < 2) continue;
     const double minutes = (times_s[b](rows - 1) - times_s[b](0)) / 60;
     const Index count = series_length(rows, 512);
-    const Vector coefficients = cosine_coefficients(interval_means(times_s[b], residuals[b], count));
+    const VectorX<Scalar> means = interval_means(times_s[b], residuals[b], count);
+    const VectorX<Scalar> coefficients = cosine_coefficients<Scalar>(means);
+    const VectorX<Scalar>& residual = residuals[b];
     const double rows_per_mean = static_cast<double>(rows) / static_cast<double>(count);
-    total += residuals[b].squaredNorm();
+    total += residual.squaredNorm();
     squares.back() += coefficients(0) * coefficients(0) * rows_per_mean;
     for (Index k = 1; k < count; ++k) {
       const double period_min = 2 * minutes / static_cast<double>(k);

@@ -12,17 +12,39 @@
 #include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/fit/pls.hpp"
 #include "thermfit/fit/residuals.hpp"
+#include "thermfit/network/simulate.hpp"
 #include "thermfit/robustness/robustness.hpp"
 #include "thermfit/select/correlation.hpp"
 
 namespace thermfit {
 
-/// S_mean and S_std, eq. (10), (12), (13), of one PLS model per stage: made from all simulated batches of the stage
+/// The campaign `real` with every column that `network` predicts replaced by what it simulates: batches as a machine
+/// would have measured them. Allocates.
+template <typename Scalar = double>
+Campaign simulated_campaign(const ThermalNetwork& network, const Campaign& real, const EffectLibrary& library) {
+  Campaign result = real;
+  const std::vector<Simulation> all = simulate(network, excitations_of(network, real), library);
+  for (std::size_t b = 0; b < result.size(); ++b) {
+    const MatrixX<Scalar>& channels = all[b].channels;
+    const auto take = [&](Channels& into, const std::string& name, std::size_t channel) {
+      const Index at = into.find(name);
+      MatrixX<Scalar>& values = into.values;
+      if (at >= 0) values.col(at) = channels.col(static_cast<Index>(channel));
+    };
+    for (std::size_t s = 0; s < network.sensors.size(); ++s) take(result[b].temperatures, network.sensors[s].column, s);
+    for (std::size_t d = 0; d < network.displacements.size(); ++d)
+      take(result[b].errors, network.displacements[d].output, network.sensors.size() + d);
+  }
+  return result;
+}
+
+/// S_mean and S_std, eq. (10), (12), (13), of one PLS model per level: made from all simulated batches of the level
 /// (temperature rises), scored on every real batch. The points are those `count` with the largest correlation with the
-/// error in the real batches, the same for all stages. `stages` are the simulator as given, calibrated, with the
+/// error in the real batches, the same for all levels. `levels` are the simulator as given, calibrated, with the
 /// effect; batches, temperatures and the error `output` in the order of `real`. Empty where a side has no such error.
-inline Transfer transfer_of(const std::array<Campaign, 3>& stages, const Campaign& real, const std::string& output,
-                            Index count = 2) {
+template <typename Scalar = double>
+Transfer transfer_of(const std::array<Campaign, 3>& levels, const Campaign& real, const std::string& output,
+                     Index count = 2) {
   Transfer result;
   if (real.empty() || real[0].errors.find(output) < 0 || real[0].temperatures.count() < count) return result;
   const auto moments_of_batch = [&](const Batch& batch) {
@@ -35,15 +57,15 @@ inline Transfer transfer_of(const std::array<Campaign, 3>& stages, const Campaig
   std::vector<Index> points;
   for (const RankedPoint& one : ranking)
     if (!one.constant && static_cast<Index>(points.size()) < count) points.push_back(one.point);
-  for (std::size_t stage = 0; stage < stages.size(); ++stage) {
+  for (std::size_t level = 0; level < levels.size(); ++level) {
     std::vector<Moments> simulated;
-    for (const Batch& batch : stages[stage]) simulated.push_back(moments_of_batch(batch).subset(points));
+    for (const Batch& batch : levels[level]) simulated.push_back(moments_of_batch(batch).subset(points));
     const LinearFit fit = fit_pls(merged(simulated));
     std::vector<double> S_by_batch;
     for (const Moments& one : measured) S_by_batch.push_back(S(residuals(fit.model, one.subset(points)))(0));
     const MeanAndStd score = MeanAndStd::of(S_by_batch);
-    result.S_mean[stage] = score.S_mean;
-    result.S_std[stage] = score.S_std;
+    result.S_mean[level] = score.S_mean;
+    result.S_std[level] = score.S_std;
   }
   for (const Index point : points) result.points.push_back(real[0].temperatures.names[static_cast<std::size_t>(point)]);
   return result;

@@ -1,9 +1,10 @@
-#include "report/diagnosis_report.hpp"
+#include "report/diagnosis_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "cli/table.hpp"
+#include "report/diagnosis_words.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -62,13 +63,7 @@ std::string parameter_text(const Estimate& one) {
   return one.unit.empty() ? text : text + ' ' + one.unit;
 }
 
-std::string joined(const std::vector<std::string>& parts, const std::string& between = ", ") {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
-  return text;
-}
-
-std::string named_output(const Gap& gap) { return gap.output == "temperatures" ? "all temperatures" : gap.output; }
+std::string named_output(const Gap& gap) { return gap.output.empty() ? "all temperatures" : gap.output; }
 
 /// "the gap in Z goes from 2.70 to 0.33 um rms on batches not used for fitting, a shrink of 88 % (95 % interval 83 to
 /// 91
@@ -91,7 +86,7 @@ std::string own_reading(const Diagnosis& diagnosis) {
   for (const ChannelGap& one : diagnosis.gap.per_sensor)
     if (one.channel == found.location && one.channel != diagnosis.gap.output)
       return " " + one.channel + " itself goes from " +
-             size_text(found.effect == "sensor-offset" ? one.rms.as_simulated : one.rms.calibrated) + " to " +
+             size_text(found.against_as_given ? one.rms.as_simulated : one.rms.calibrated) + " to " +
              size_text(one.rms.with_effect) + " " + one.unit + ".";
   return "";
 }
@@ -152,7 +147,7 @@ std::string sentence(const Diagnosis& diagnosis) {
   }
   std::string text;
   for (const FoundEffect& found : diagnosis.effects) {
-    const std::string means = meaning(found.effect);
+    const std::string means = found.meaning.empty() ? meaning(found.effect) : found.meaning;
     text += (text.empty() ? "at " : ", and at ") + (found.location == "all" ? "all nodes" : found.location);
     if (!found.same_place.empty()) text += " (or " + joined(found.same_place, " or ") + ")";
     text += " " + (means.empty() ? "acts an effect of its own" : means) + " (" + found.effect +
@@ -178,7 +173,7 @@ class Sections {
 std::vector<std::string> ruled_out(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
   for (const RuledOut& one : diagnosis.ruled_out)
-    if (lines.size() < 8) lines.push_back(title_of(one.effect, one.location, "") + ": " + one.reason);
+    if (lines.size() < 8) lines.push_back(title_of(one.effect, one.location, "") + ": " + reason_of(one));
   if (diagnosis.ruled_out.size() > lines.size())
     lines.push_back(std::to_string(diagnosis.ruled_out.size() - lines.size()) + " more: --json lists them");
   return lines;
@@ -194,7 +189,7 @@ std::vector<std::string> not_told_apart(const Diagnosis& diagnosis) {
     if (!found.same_place.empty())
       lines.push_back(found.effect + ": the place may as well be " + joined(found.same_place, ", "));
   }
-  if (!diagnosis.where.agrees && !diagnosis.where.difference.empty()) lines.push_back(diagnosis.where.difference);
+  if (!diagnosis.where.agrees) lines.push_back(difference_of(diagnosis.where));
   return lines;
 }
 
@@ -202,10 +197,11 @@ std::vector<std::string> next_experiment(const NextExperiment& next) {
   std::vector<std::string> lines;
   double hours = 0;
   for (const PlannedBlock& block : next.plan) {
-    lines.push_back(block.schedule + ": " + block.how + " (" + fixed_text(block.machine_hours, 1) + " machine hours)");
+    lines.push_back(schedule_of(block) + ": " + settings_of(block) + " (" + fixed_text(block.machine_hours, 1) +
+                    " machine hours)");
     hours += block.machine_hours;
   }
-  if (!next.why.empty()) lines.push_back(next.why);
+  if (const std::string remark = remark_of(next); !remark.empty()) lines.push_back(remark);
   if (next.separates.size() > 1 && std::isfinite(next.confusion_after))
     lines.push_back("probability of taking one for the other: " + confidence_text(next.confusion_before) + " now, " +
                     confidence_text(next.confusion_after) + " after these " + fixed_text(hours, 1) + " hours");
@@ -214,16 +210,18 @@ std::vector<std::string> next_experiment(const NextExperiment& next) {
 
 std::vector<std::string> data_problems(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
-  for (const DataProblem& one : diagnosis.data_problems) lines.push_back(one.place + ": " + one.what);
+  for (const DataProblem& one : diagnosis.data_problems) lines.push_back(place_of(one) + ": " + what_of(one));
   return lines;
 }
 
 std::string remaining_text(const Diagnosis& diagnosis) {
   const Remaining& remaining = diagnosis.remaining;
-  if (diagnosis.verdict == Verdict::none || remaining.looks_like.empty()) return "";
-  if (remaining.looks_like == "noise") return "What remains is noise.\n";
-  return wrap("What remains: " + size_text(remaining.unexplained_um) + ' ' + diagnosis.gap.unit +
-                  " beyond noise, cause unknown: " + remaining.looks_like + ".",
+  if (diagnosis.verdict == Verdict::none || remaining.looks.empty()) return "";
+  const RemainingLook& first = remaining.looks[0];
+  if (remaining.looks.size() == 1 && first.channel.empty() && first.kind == RemainingLook::Kind::noise)
+    return "What remains is noise.\n";
+  return wrap("What remains: " + size_text(remaining.unexplained) + ' ' + diagnosis.gap.unit +
+                  " beyond noise, cause unknown: " + looks_of(remaining, diagnosis.gap.unit) + ".",
               width, 0);
 }
 
@@ -234,13 +232,13 @@ std::string gap_table(const Diagnosis& diagnosis) {
     table.add({name, size_text(rms.as_simulated), size_text(rms.calibrated), named ? size_text(rms.with_effect) : "-",
                size_text(rms.noise), unit});
   };
-  add(diagnosis.gap.output, diagnosis.gap.rms, diagnosis.gap.unit);
+  add(output_name(diagnosis.gap), diagnosis.gap.rms, diagnosis.gap.unit);
   if (!diagnosis.gap.per_sensor.empty()) table.rule();
   for (const ChannelGap& one : diagnosis.gap.per_sensor)
     if (one.channel != diagnosis.gap.output) add(one.channel, one.rms, one.unit);
   if (!diagnosis.gap.per_batch.empty()) table.rule();
   for (const BatchGap& one : diagnosis.gap.per_batch)
-    add(diagnosis.gap.output + " in " + one.batch, one.rms, diagnosis.gap.unit);
+    add(output_name(diagnosis.gap) + " in " + one.batch, one.rms, diagnosis.gap.unit);
   return table.text();
 }
 
@@ -319,7 +317,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   sections.add("Not told apart by these data", not_told_apart(diagnosis));
   sections.add("Next experiment", next_experiment(diagnosis.next_experiment));
   sections.add("Data problems", data_problems(diagnosis));
-  sections.add("Weaker claims", diagnosis.weaker_claims);
+  std::vector<std::string> claims;
+  for (const WeakerClaim& one : diagnosis.weaker_claims) claims.push_back(claim_of(one));
+  sections.add("Weaker claims", claims);
   text += sections.text + '\n' + gap_table(diagnosis) + transfer_table(diagnosis.gap.transfer) +
           where_table(diagnosis.where) + calibration_table(diagnosis.calibration);
   return text;

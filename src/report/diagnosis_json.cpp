@@ -1,27 +1,26 @@
-#pragma once
+#include "report/diagnosis_json.hpp"
 
-/// A diagnosis as the document `thermfit-diagnosis/1`.
-
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "thermfit/diagnosis/diagnosis.hpp"
+#include "report/diagnosis_words.hpp"
 #include "thermfit/number.hpp"
 
-namespace thermfit {
-
-namespace detail {
+namespace thermfit::cli {
+namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
 /// Six significant digits: more would be noise to a reader and differ between compilers. Non-finite reads `null`.
-inline OrderedJson figure(double value) {
+OrderedJson figure(double value) {
   if (!std::isfinite(value)) return nullptr;
   return parse_number(general_text(value, 6)).value_or(0.0);
 }
 
-inline OrderedJson figures(Interval interval) { return {figure(interval.low), figure(interval.high)}; }
+OrderedJson figures(Interval interval) { return {figure(interval.low), figure(interval.high)}; }
 
-inline OrderedJson figures(const std::array<double, 3>& values) {
+OrderedJson figures(const std::array<double, 3>& values) {
   return {figure(values[0]), figure(values[1]), figure(values[2])};
 }
 
@@ -33,7 +32,7 @@ OrderedJson array_of(const Items& items, Convert convert) {
   return array;
 }
 
-inline void add_stages(OrderedJson& object, const GapLevels& rms) {
+void add_stages(OrderedJson& object, const GapLevels& rms) {
   object["as_simulated"] = figure(rms.as_simulated);
   object["calibrated"] = figure(rms.calibrated);
   object["with_effect"] = figure(rms.with_effect);
@@ -48,7 +47,7 @@ OrderedJson named_json(const Named& one) {
   return object;
 }
 
-inline OrderedJson effect_json(const FoundEffect& found) {
+OrderedJson effect_json(const FoundEffect& found) {
   OrderedJson object = named_json(found);
   object["confidence"] = figure(found.confidence);
   OrderedJson& parameters = object["parameters"] = OrderedJson::object();
@@ -66,8 +65,8 @@ inline OrderedJson effect_json(const FoundEffect& found) {
   return object;
 }
 
-inline OrderedJson gap_json(const Gap& gap) {
-  OrderedJson object{{"output", gap.output}, {"unit", gap.unit}};
+OrderedJson gap_json(const Gap& gap) {
+  OrderedJson object{{"output", output_name(gap)}, {"unit", gap.unit}};
   add_stages(object, gap.rms);
   object["held_out"] = gap.held_out;
   object["shrink_percent"] = figure(gap.shrink_percent);
@@ -91,7 +90,7 @@ inline OrderedJson gap_json(const Gap& gap) {
   return object;
 }
 
-inline OrderedJson condition_json(const ConditionShare& one) {
+OrderedJson condition_json(const ConditionShare& one) {
   OrderedJson object{{"factor", one.factor}};
   if (one.is_range)
     object["range"] = figures(one.range);
@@ -103,7 +102,7 @@ inline OrderedJson condition_json(const ConditionShare& one) {
   return object;
 }
 
-inline OrderedJson where_json(const Where& where) {
+OrderedJson where_json(const Where& where) {
   const auto named = [](const char* key) {
     return [key](const NamedShare& one) { return OrderedJson{{key, one.name}, {"share", figure(one.share)}}; };
   };
@@ -120,64 +119,68 @@ inline OrderedJson where_json(const Where& where) {
                        {"expansion_um", figure(where.chain.expansion_um)},
                        {"um_per_K_sensed", figure(where.chain.um_per_K_sensed)}};
   object["views_agree"] = where.agrees;
-  if (!where.difference.empty()) object["difference"] = where.difference;
+  if (!where.agrees) object["difference"] = difference_of(where);
   return object;
 }
 
-inline OrderedJson next_experiment_json(const NextExperiment& next) {
-  return {{"separates", next.separates},
+/// `unexplained_um` only where the gap is one in um; `unexplained` with its unit always.
+OrderedJson remaining_json(const Remaining& remaining, const std::string& unit) {
+  OrderedJson object{{"white", remaining.white}};
+  if (unit == "um") object["unexplained_um"] = figure(remaining.unexplained);
+  object["looks_like"] = looks_of(remaining, unit);
+  object["unexplained"] = figure(remaining.unexplained);
+  object["unit"] = unit;
+  return object;
+}
+
+OrderedJson next_experiment_json(const NextExperiment& next) {
+  return {{"separates", array_of(next.separates, name_of)},
           {"plan", array_of(next.plan,
                             [](const PlannedBlock& block) {
-                              return OrderedJson{{"schedule", block.schedule},
-                                                 {"how", block.how},
+                              return OrderedJson{{"schedule", schedule_of(block)},
+                                                 {"how", settings_of(block)},
                                                  {"machine_hours", figure(block.machine_hours)}};
                             })},
           {"expected_confidence", figure(next.expected_confidence)},
           {"confusion_before", figure(next.confusion_before)},
           {"confusion_after", figure(next.confusion_after)},
-          {"why", next.why}};
+          {"why", remark_of(next)}};
 }
 
-}  // namespace detail
-
-/// The document `thermfit-diagnosis/1`: keys in the order of the format, added keys after them; figures with six
-/// significant digits, `null` where a figure does not exist.
-inline nlohmann::ordered_json diagnosis_to_json(const Diagnosis& diagnosis) {
-  using detail::OrderedJson;
+OrderedJson document_of(const Diagnosis& diagnosis) {
   OrderedJson document{{"format", "thermfit-diagnosis/1"},
-                       {"mode", diagnosis.mode},
+                       {"mode", diagnosis.simulator == SimulatorKind::network ? "network" : "paired"},
                        {"machine", diagnosis.machine},
                        {"batches", diagnosis.batches},
                        {"verdict", word_of(diagnosis.verdict)}};
-  document["effects"] = detail::array_of(diagnosis.effects, detail::effect_json);
-  document["gap"] = detail::gap_json(diagnosis.gap);
-  document["where"] = detail::where_json(diagnosis.where);
-  document["remaining"] = {{"white", diagnosis.remaining.white},
-                           {"unexplained_um", detail::figure(diagnosis.remaining.unexplained_um)},
-                           {"looks_like", diagnosis.remaining.looks_like}};
-  document["next_experiment"] = detail::next_experiment_json(diagnosis.next_experiment);
-  document["ruled_out"] = detail::array_of(diagnosis.ruled_out, [](const RuledOut& one) {
-    return OrderedJson{{"effect", one.effect}, {"location", one.location}, {"reason", one.reason}};
+  document["effects"] = array_of(diagnosis.effects, effect_json);
+  document["gap"] = gap_json(diagnosis.gap);
+  document["where"] = where_json(diagnosis.where);
+  document["remaining"] = remaining_json(diagnosis.remaining, diagnosis.gap.unit);
+  document["next_experiment"] = next_experiment_json(diagnosis.next_experiment);
+  document["ruled_out"] = array_of(diagnosis.ruled_out, [](const RuledOut& one) {
+    return OrderedJson{{"effect", one.effect}, {"location", one.location}, {"reason", reason_of(one)}};
   });
-  const Support& grounds = diagnosis.grounds;
-  document["grounds"] = {{"candidates", grounds.candidates},
-                         {"nearest", detail::array_of(grounds.nearest, detail::named_json<Rival>)},
-                         {"gain_nats", detail::figure(grounds.gain_nats)},
-                         {"closes", detail::figure(grounds.closes)},
-                         {"leaves", detail::figure(grounds.leaves)}};
-  document["calibration"] = detail::array_of(diagnosis.calibration, [](const CalibrationMove& one) {
-    return OrderedJson{{"parameter", one.parameter},
-                       {"unit", one.unit},
-                       {"from", detail::figure(one.from)},
-                       {"to", detail::figure(one.to)},
-                       {"prior_sds", detail::figure(one.prior_sds)},
-                       {"pinned", one.pinned}};
+  const Support& support = diagnosis.support;
+  document["grounds"] = {{"candidates", support.candidates},
+                         {"nearest", array_of(support.nearest, named_json<Rival>)},
+                         {"gain_nats", figure(support.gain_nats)},
+                         {"closes", figure(support.closes)},
+                         {"leaves", figure(support.leaves)}};
+  document["calibration"] = array_of(diagnosis.calibration, [](const CalibrationMove& one) {
+    return OrderedJson{{"parameter", one.parameter},         {"unit", one.unit},
+                       {"from", figure(one.from)},           {"to", figure(one.to)},
+                       {"prior_sds", figure(one.prior_sds)}, {"pinned", one.pinned}};
   });
-  document["data_problems"] = detail::array_of(diagnosis.data_problems, [](const DataProblem& one) {
-    return OrderedJson{{"place", one.place}, {"what", one.what}};
+  document["data_problems"] = array_of(diagnosis.data_problems, [](const DataProblem& one) {
+    return OrderedJson{{"place", place_of(one)}, {"what", what_of(one)}};
   });
-  document["weaker_claims"] = diagnosis.weaker_claims;
+  document["weaker_claims"] = array_of(diagnosis.weaker_claims, claim_of);
   return document;
 }
 
-}  // namespace thermfit
+}  // namespace
+
+std::string diagnosis_json(const Diagnosis& diagnosis) { return document_of(diagnosis).dump(1); }
+
+}  // namespace thermfit::cli

@@ -1,0 +1,249 @@
+#include "report/diagnosis_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "thermfit/number.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+std::string whole_percent(double share) {
+  return std::to_string(static_cast<int>(std::lround(100 * std::clamp(share, 0.0, 1.0)))) + " %";
+}
+
+std::string look_of(const RemainingLook& look, const std::string& unit) {
+  using Kind = RemainingLook::Kind;
+  switch (look.kind) {
+    case Kind::too_few:
+      return "too few samples to say";
+    case Kind::noise:
+      return "noise";
+    case Kind::louder_noise:
+      return "noise larger than the noise estimate of " + fixed_text(look.noise, 2) + " " + unit;
+    case Kind::slow_unrecorded:
+      return "slow changes that follow nothing recorded";
+    case Kind::shaped:
+      break;
+  }
+  std::vector<std::string> parts;
+  if (look.offset_share > 0)
+    parts.push_back("an offset per batch (" + fixed_text(100 * look.offset_share, 0) + " % of it)");
+  if (look.trend_share > 0) parts.push_back("a slow drift (" + fixed_text(100 * look.trend_share, 0) + " %)");
+  if (!look.follows.empty())
+    parts.push_back("it follows " + look.follows + " (correlation " + fixed_text(look.correlation, 2) +
+                    (look.lag_min > 0 ? ", " + fixed_text(look.lag_min, 0) + " min later)" : ")"));
+  return joined(parts, "; ");
+}
+
+/// Settings of a schedule of the menu, whose levels are known.
+std::string menu_settings(const PlannedBlock& block) {
+  const std::string level = general_text(block.level, 5), own = block.subject + " at ";
+  switch (block.kind) {
+    case ScheduleKind::speed_stair:
+      return own + "25, 50, 75 and 100 % of " + level + ", then 0";
+    case ScheduleKind::single_high_speed:
+      return own + level + " from cold";
+    case ScheduleKind::cool_down:
+      return own + level + ", then 0 for twice as long";
+    case ScheduleKind::toggle:
+      return block.beside + " at half of " + level + ", " + block.subject + " on and off in six equal pieces";
+    case ScheduleKind::only:
+      return own + level + ", everything else off, then a pause";
+    case ScheduleKind::idle_day:
+      return "everything off while the room swings by 6 K";
+    case ScheduleKind::repeat:
+      return "batch " + block.batch + " once more";
+    case ScheduleKind::sensor_swap:
+      return "exchange " + block.subject + " and " + block.beside + ", then batch " + block.batch +
+             " once more: a faulty thermometer takes its fault along";
+  }
+  return {};
+}
+
+/// Settings of a schedule that shows an effect by itself, locates a gap or pins a parameter.
+std::string general_settings(const PlannedBlock& block) {
+  const bool locates = block.purpose == SchedulePurpose::locates;
+  switch (block.kind) {
+    case ScheduleKind::speed_stair:
+      return "each speed held until the machine settles";
+    case ScheduleKind::single_high_speed:
+      return "full speed from cold";
+    case ScheduleKind::cool_down:
+      return block.purpose == SchedulePurpose::pins
+                 ? "full speed, then off for twice as long: capacities and conductances separate"
+                 : "full speed, then off for twice as long";
+    case ScheduleKind::toggle:
+      return locates ? "hold everything else, step only " + block.subject + " on and off, twice, long enough to settle"
+                     : "only " + block.subject + " on and off, twice, everything else held";
+    case ScheduleKind::only:
+      return "only " + block.subject + ", everything else off, then a pause";
+    case ScheduleKind::idle_day:
+      return locates ? "everything off, room logged: what remains then is not driven by the spindle"
+                     : "everything off, room logged";
+    case ScheduleKind::repeat:
+      return "the first batch again, after a night at rest";
+    case ScheduleKind::sensor_swap:
+      return "exchange " + block.subject + " with a trusted thermometer, then repeat a batch";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string joined(const std::vector<std::string>& parts, const std::string& between) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+std::string output_name(const Gap& gap) { return gap.output.empty() ? "temperatures" : gap.output; }
+
+std::string name_of(const Rival& rival) { return rival.effect + " at " + rival.location; }
+
+std::string reason_of(const RuledOut& one) {
+  switch (one.by) {
+    case RuledOutBy::no_shrink:
+      return "does not shrink the gap on held-out batches";
+    case RuledOutBy::share:
+      return "closes " + whole_percent(one.value) + " of the gap on held-out batches" +
+             (std::isfinite(one.best) ? ", the best " + whole_percent(one.best) : "");
+    case RuledOutBy::calibration:
+      return "no better than calibration (" + fixed_text(std::max(0., one.value), 0) + " nats)";
+    case RuledOutBy::evidence:
+      return fixed_text(one.value, 0) + " nats behind the best";
+    case RuledOutBy::strength:
+      return "fits only with a strength of " + fixed_text(one.value, 1) + " instead of 1";
+    case RuledOutBy::sign:
+      return "the sensors respond with the wrong sign";
+    case RuledOutBy::elsewhere:
+      return "other sensors than its own respond most";
+    case RuledOutBy::same_sign:
+      return "both ends respond with the same sign";
+    case RuledOutBy::remains:
+      return "comes nearest, but leaves too much on batches left out";
+  }
+  return {};
+}
+
+std::string difference_of(const Where& where) {
+  if (where.agrees) return {};
+  return "without assuming an effect, " + where.free_place + " explains the gap best; the effect acts at " +
+         where.effect_place + ": neighbours, spread effects and nodes without a sensor look alike in this view";
+}
+
+std::string looks_of(const Remaining& remaining, const std::string& unit) {
+  std::vector<std::string> parts;
+  for (const RemainingLook& one : remaining.looks)
+    parts.push_back((one.channel.empty() ? "" : one.channel + ": ") + look_of(one, unit));
+  return joined(parts, "; ");
+}
+
+std::string schedule_of(const PlannedBlock& block) {
+  switch (block.kind) {
+    case ScheduleKind::speed_stair:
+      return "speed stair";
+    case ScheduleKind::single_high_speed:
+      return "single high speed";
+    case ScheduleKind::cool_down:
+      return "cool-down";
+    case ScheduleKind::toggle:
+      return block.subject + " toggle";
+    case ScheduleKind::only:
+      return block.subject + " only";
+    case ScheduleKind::idle_day:
+      return "idle day";
+    case ScheduleKind::repeat:
+      return "repeat";
+    case ScheduleKind::sensor_swap:
+      return "sensor swap";
+  }
+  return {};
+}
+
+std::string settings_of(const PlannedBlock& block) {
+  return (block.purpose == SchedulePurpose::separates ? menu_settings(block) : general_settings(block)) +
+         (block.times > 1 ? ", " + std::to_string(block.times) + " times" : "");
+}
+
+std::string remark_of(const NextExperiment& next) {
+  using Remark = NextExperiment::Remark;
+  switch (next.remark) {
+    case Remark::none:
+      return {};
+    case Remark::nothing_separates:
+      return "no schedule of the menu separates " + name_of(next.separates[0]) + " from " + name_of(next.separates[1]) +
+             " well; a sensor at the place in question would";
+    case Remark::not_foreseeable:
+      return "without the network the probability of confusion after the plan cannot be given";
+    case Remark::thermometer_near:
+      return "add a temperature sensor near " + next.subject + ", where the gap lies most";
+    case Remark::not_pinned:
+      return next.subject + " is not pinned by these data";
+  }
+  return {};
+}
+
+std::string place_of(const DataProblem& problem) {
+  using Kind = DataProblem::Kind;
+  switch (problem.kind) {
+    case Kind::not_measured:
+    case Kind::not_modelled:
+      return "sensors";
+    case Kind::not_simulated:
+    case Kind::not_paired:
+    case Kind::resampled:
+      return "pairing";
+    case Kind::finding:
+      return problem.batch + " " + problem.channel;
+  }
+  return {};
+}
+
+std::string what_of(const DataProblem& problem) {
+  using Kind = DataProblem::Kind;
+  switch (problem.kind) {
+    case Kind::not_measured:
+      return "the batches lack " + joined(problem.names) + "; the machine file has them";
+    case Kind::not_modelled:
+      return "the machine file lacks " + joined(problem.names) + "; left out";
+    case Kind::not_simulated:
+      return joined(problem.names) + ": measured but not simulated; left out";
+    case Kind::not_paired:
+      return "batch " + joined(problem.names) + " has no simulated counterpart; left out";
+    case Kind::resampled:
+      return "sampling differs: simulated values are read off linearly at measured times";
+    case Kind::finding:
+      return problem.rule + (problem.note.empty() ? "" : ": " + problem.note);
+  }
+  return {};
+}
+
+std::string claim_of(const WeakerClaim& claim) {
+  using Kind = WeakerClaim::Kind;
+  switch (claim.kind) {
+    case Kind::one_batch:
+      return "One batch only: nothing can be judged on data not used for fitting. Every figure is that of the fit "
+             "itself, and a wrong effect may look right.";
+    case Kind::few_batches:
+      return "Only " + std::to_string(claim.batches) +
+             " batches: held-out figures rest on few data and the interval of the shrink is wide.";
+    case Kind::constant_input:
+      return "Input " + claim.subject + " never changes: effects that it drives cannot be told from calibration.";
+    case Kind::lone_input:
+      return "Input " + claim.subject + " is on in batch " + claim.batch +
+             " alone: what it drives cannot be judged on batches not used for fitting, and that batch judges nothing.";
+    case Kind::no_network:
+      return "without the network no power in W, no node between the sensors, and no machine with the effect can be "
+             "given; a place is the sensor that responds";
+    case Kind::no_ambient:
+      return "no ambient temperature is known (--ambient NAME): effects of the room cannot be told apart";
+    case Kind::no_displacement:
+      return "no displacement is paired: expansion and probe effects were not looked for";
+    case Kind::gap_beside:
+      return "beside it a gap without a name remains in " + joined(claim.names);
+  }
+  return {};
+}
+
+}  // namespace thermfit::cli
