@@ -13,6 +13,7 @@ namespace thermfit {
 /// Numerical outcomes (rank, convergence, condition) are results and never thrown.
 class Error : public std::runtime_error {
  public:
+  /// Keeps the four parts and joins them to what(); empty parts are left out. Allocates.
   explicit Error(std::string place, std::string found, std::string allowed = {}, std::string remedy = {})
       : std::runtime_error(sentence(place, found, allowed, remedy)),
         place_(std::move(place)),
@@ -20,9 +21,13 @@ class Error : public std::runtime_error {
         allowed_(std::move(allowed)),
         remedy_(std::move(remedy)) {}
 
+  /// Where: `file:line:column`, a key path or the name of an argument; may be empty.
   const std::string& place() const noexcept { return place_; }
+  /// What stands there, in words.
   const std::string& found() const noexcept { return found_; }
+  /// What may stand there; may be empty.
   const std::string& allowed() const noexcept { return allowed_; }
+  /// What to do next; may be empty.
   const std::string& remedy() const noexcept { return remedy_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace thermfit {
 
-/// Shortest text that reads back to the same double.
+/// Shortest text that reads back to the same double; `nan`, `inf`, `-inf` where it is not finite. Allocates the text.
 inline std::string exact_text(double value) {
   char buffer[32];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
@@ -18,6 +18,7 @@ inline std::string exact_text(double value) {
 }
 
 /// `value` with `decimals` digits after the point; non-finite values read `nan`, `inf`, `-inf`. Never prints `-0`.
+/// Allocates the text.
 inline std::string fixed_text(double value, int decimals) {
   if (!std::isfinite(value)) return exact_text(value);
   char buffer[400];
@@ -27,7 +28,7 @@ inline std::string fixed_text(double value, int decimals) {
   return text;
 }
 
-/// `value` with `digits` significant digits, in the shorter of fixed and scientific notation.
+/// `value` with `digits` significant digits, in the shorter of fixed and scientific notation. Allocates the text.
 inline std::string general_text(double value, int digits) {
   char buffer[64];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr;
@@ -35,7 +36,7 @@ inline std::string general_text(double value, int digits) {
 }
 
 /// The finite decimal number that `text` spells as a whole; nothing for blanks, trailing characters, hex, nan, inf or
-/// a value no double holds. One leading '+' is allowed.
+/// a value no double holds. One leading '+' is allowed. Does not allocate.
 inline std::optional<double> parse_number(std::string_view text) {
   if (!text.empty() && text.front() == '+') {
     text.remove_prefix(1);

@@ -27,7 +27,7 @@ int unknown_command(const std::string& word, Console& console) {
   return code(Exit::failed);
 }
 
-int run_command(const Command& command, std::vector<std::string> words, Console& console) {
+int run_command(const Command& command, const std::vector<std::string>& words, Console& console) {
   for (const std::string& word : words) {
     if (word == "--") break;
     if (word != "-h" && word != "--help") continue;

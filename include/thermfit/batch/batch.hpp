@@ -10,9 +10,10 @@ namespace thermfit {
 
 /// Named columns of one kind: `values` is rows x names.size(), in the order of `names`.
 struct Channels {
-  std::vector<std::string> names;
-  Matrix values;
+  std::vector<std::string> names;  ///< as in the file, without the unit
+  Matrix values;                   ///< rows x names.size(), in the unit of the kind; NaN where a value is missing
 
+  /// How many channels there are. Does not allocate.
   Index count() const { return static_cast<Index>(names.size()); }
 
   /// Column of `name`, or -1. Does not allocate.
@@ -38,10 +39,12 @@ struct Batch {
   Index dropped_rows = 0;  ///< rows the reader left out because a value was missing (`--missing drop`)
   Index held_values = 0;   ///< missing values replaced by the last one of their channel (`--missing hold`)
 
+  /// Number of samples, from whichever member has any. Does not allocate.
   Index rows() const {
     if (temperatures.values.cols() > 0) return temperatures.values.rows();
     return errors.values.cols() > 0 ? errors.values.rows() : time_s.size();
   }
+  /// Whether the batch has a clock. Does not allocate.
   bool has_time() const { return time_s.size() > 0; }
 };
 

@@ -4,9 +4,11 @@
 
 namespace thermfit {
 
-/// What a model's temperatures are measured from. Rise (since the first sample of the batch) is the paper's reading
-/// and the default; absolute keeps degC.
-enum class TemperatureReference { rise, absolute };
+/// What a model's temperatures are measured from. Rise is the paper's reading and the default.
+enum class TemperatureReference {
+  rise,     ///< since the first sample of the batch, K
+  absolute  ///< as measured, degC
+};
 
 /// Temperatures as a model sees them, rows x points: `T(t) - T(first row)` in K for rise, degC for absolute.
 /// A batch without rows gives an empty matrix. Allocates the result.

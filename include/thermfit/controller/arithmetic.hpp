@@ -17,11 +17,13 @@ constexpr bool within(Scalar value, Scalar lowest, Scalar highest) noexcept {
   return lowest <= value && value <= highest;
 }
 
+/// Whether `value` is a number: neither NaN nor infinite.
 template <class Scalar>
 constexpr bool is_finite(Scalar value) noexcept {
   return within(value, std::numeric_limits<Scalar>::lowest(), std::numeric_limits<Scalar>::max());
 }
 
+/// `value` without its sign; NaN stays NaN.
 template <class Scalar>
 constexpr Scalar magnitude(Scalar value) noexcept {
   return value < 0 ? -value : value;

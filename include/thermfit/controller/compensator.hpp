@@ -19,10 +19,10 @@ template <class Scalar, int Sensors, int Errors, int Components>
 class Compensator {
  public:
   static_assert(Sensors != 0 && Errors != 0, "a model has sensors and errors");
-  using Model = ControllerModel<Scalar, Sensors, Errors, Components>;
-  using Settings = CompensatorSettings<Scalar, Sensors, Errors>;
-  using Temperatures = Row<Scalar, Sensors>;
-  using Offsets = Row<Scalar, Errors>;
+  using Model = ControllerModel<Scalar, Sensors, Errors, Components>;  ///< the model it runs
+  using Settings = CompensatorSettings<Scalar, Sensors, Errors>;       ///< how it behaves
+  using Temperatures = Row<Scalar, Sensors>;                           ///< one reading a sensor, degC
+  using Offsets = Row<Scalar, Errors>;                                 ///< one offset an error, um
 
   /// Off, offset 0. Faulty settings show in status() and are never started.
   Compensator(const Model& model, const Settings& settings) noexcept : model_(model), settings_(settings) {
@@ -87,8 +87,11 @@ class Compensator {
     return status_;
   }
 
+  /// The offset of each error after the last step, um; finite and within ± clamp.
   const Offsets& offset_um() const noexcept { return offset_um_; }
+  /// The status word of the last step.
   CompensatorStatus status() const noexcept { return status_; }
+  /// What it is doing now.
   CompensatorState state() const noexcept { return state_; }
 
   /// The zero of the temperature rise, to be kept over a power cycle; 0 where there is none.

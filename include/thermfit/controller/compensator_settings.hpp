@@ -19,9 +19,9 @@ struct CompensatorSettings {
   Row<SensorLimits<Scalar>, Sensors> sensors{};  ///< range, rate and stuck check of each sensor
   GuardPatience<Scalar> patience{};              ///< when a sensor is lost and when it is trusted again
   std::uint32_t hold_steps = 600;  ///< steps an offset may be held before it ramps to zero; 0: ramps at once
-  DomainPolicy domain_policy = DomainPolicy::warn;
-  Row<OutputLimits<Scalar>, Errors> outputs{};  ///< clamp and slew of each axis
-  OutputSign sign = OutputSign::correction;
+  DomainPolicy domain_policy = DomainPolicy::warn;  ///< what to do with a sample unlike those of training
+  Row<OutputLimits<Scalar>, Errors> outputs{};      ///< clamp and slew of each axis
+  OutputSign sign = OutputSign::correction;         ///< what the offset means to the control
 };
 
 /// Text of the first rule that `settings` break, or nullptr. A compensator refuses to start with broken settings.

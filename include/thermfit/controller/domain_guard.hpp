@@ -19,9 +19,9 @@ enum class DomainPolicy : std::uint8_t {
 template <class Scalar, int Sensors, int Components>
 class DomainGuard {
  public:
-  using Domain = ControllerDomain<Scalar, Sensors, Components>;
+  using Domain = ControllerDomain<Scalar, Sensors, Components>;  ///< the training domain it looks at
 
-  /// Only dynamic rows allocate.
+  /// Makes room for the scores of `domain`. Only dynamic rows allocate.
   void reset(const Domain& domain) { detail::set_size(scores_, domain.inverse_score_variance.size()); }
 
   /// 1 inside the domain; else the factor in 0…1 by which the way from the mean to `temperatures` must shrink for the

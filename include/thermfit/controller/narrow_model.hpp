@@ -12,8 +12,11 @@
 
 namespace thermfit {
 
-/// Which limit of the training domain counts: 5 % or 1 % of ordinary samples lie beyond it.
-enum class DomainLimit { percent_95, percent_99 };
+/// Which limit of the training domain counts.
+enum class DomainLimit {
+  percent_95,  ///< 5 % of ordinary samples lie beyond it
+  percent_99   ///< 1 % of ordinary samples lie beyond it
+};
 
 namespace detail {
 

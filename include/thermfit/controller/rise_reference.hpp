@@ -39,8 +39,11 @@ class RiseReference {
     captured_ = true;
   }
 
+  /// Whether the zero has been taken, restored or is not needed.
   bool captured() const noexcept { return captured_; }
+  /// Whether that sensor has a zero.
   bool known(std::size_t sensor) const noexcept { return known_[sensor]; }
+  /// The zero of each sensor, degC; 0 where there is none.
   const Row<Scalar, Sensors>& zero_degC() const noexcept { return zero_degC_; }
 
  private:

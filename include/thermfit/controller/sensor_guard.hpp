@@ -9,9 +9,10 @@ namespace thermfit {
 /// What a working sensor can do.
 template <class Scalar>
 struct SensorLimits {
-  Scalar lowest_degC = 0, highest_degC = 0;  ///< readings outside are no temperatures of this machine
-  Scalar largest_step_K = 0;                 ///< most it can change from one step to the next; > 0
-  std::uint32_t stuck_steps = 0;             ///< so long without any change is suspicious; 0: not checked
+  Scalar lowest_degC = 0;         ///< readings below are no temperatures of this machine
+  Scalar highest_degC = 0;        ///< readings above neither
+  Scalar largest_step_K = 0;      ///< most it can change from one step to the next; > 0
+  std::uint32_t stuck_steps = 0;  ///< so long without any change is suspicious; 0: not checked
 };
 
 /// How patient the guard is.

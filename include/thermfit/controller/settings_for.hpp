@@ -25,9 +25,9 @@ struct CompensationWishes {
   double rate_floor_K = 1;         ///< plus one step of this size for noise and resolution
   double stuck_factor = 3;         ///< and rest so many times longer; 0: stuck sensors are not looked for
   double others_moved_K = 2;       ///< while the others moved by this on average
-  DomainPolicy domain_policy = DomainPolicy::warn;
-  DomainLimit domain_limit = DomainLimit::percent_99;
-  OutputSign sign = OutputSign::correction;
+  DomainPolicy domain_policy = DomainPolicy::warn;     ///< what to do with a sample unlike those of training
+  DomainLimit domain_limit = DomainLimit::percent_99;  ///< which limit tells that it is unlike
+  OutputSign sign = OutputSign::correction;            ///< what the offset means to the control
 };
 
 namespace detail {

@@ -14,6 +14,7 @@ enum class CompensatorState : std::uint8_t {
   fallback,      ///< held too long: offset ramps to zero and waits for readings to trust
   stopping       ///< offset ramps to zero, then off
 };
+/// How many states there are: rows of the table below.
 constexpr int compensator_states = 7;
 
 /// What can happen to it. Each step raises exactly one of the middle four; then at_zero where that is the case.
@@ -26,6 +27,7 @@ enum class CompensatorEvent : std::uint8_t {
   hold_expired,       ///< neither, for longer than the hold time-out
   at_zero             ///< every offset is zero
 };
+/// How many events there are: columns of the table below.
 constexpr int compensator_events = 7;
 
 /// The state after `event`. This table is the whole behaviour; rows are states, columns events, in the order above.
@@ -46,9 +48,14 @@ constexpr CompensatorState next_state(CompensatorState state, CompensatorEvent e
   return table[static_cast<int>(state)][static_cast<int>(event)];
 }
 
-/// Whether the offset follows the model, rests where it is, or moves to zero in `state`.
-enum class OffsetTarget : std::uint8_t { demand, rest, zero };
+/// Where the offset goes.
+enum class OffsetTarget : std::uint8_t {
+  demand,  ///< it follows the model
+  rest,    ///< it stays where it is
+  zero     ///< it ramps to zero
+};
 
+/// Where the offset goes in `state`.
 constexpr OffsetTarget offset_target(CompensatorState state) noexcept {
   using S = CompensatorState;
   if (state == S::tracking || state == S::substituting) return OffsetTarget::demand;

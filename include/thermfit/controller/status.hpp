@@ -8,7 +8,7 @@ namespace thermfit {
 
 /// Why a sensor is not used.
 enum class SensorFault : std::uint8_t {
-  none,
+  none,         ///< it is used
   not_finite,   ///< NaN or infinite
   range,        ///< outside the readings that make sense for it
   rate,         ///< changed faster than it can since it was last trusted
@@ -30,18 +30,28 @@ enum class SensorFault : std::uint8_t {
 /// | 16–19 | SensorFault of that sensor |
 /// | 20–27 | how many sensors are not used |
 struct CompensatorStatus {
-  std::uint32_t word = 0;
+  std::uint32_t word = 0;  ///< the bits of the table above
 
-  static constexpr std::uint32_t outside_domain_bit = 1u << 4, clamped_bit = 1u << 5, slewing_bit = 1u << 6,
-                                 bad_settings_bit = 1u << 7;
+  static constexpr std::uint32_t outside_domain_bit = 1u << 4;  ///< bit 4 of the word
+  static constexpr std::uint32_t clamped_bit = 1u << 5;         ///< bit 5 of the word
+  static constexpr std::uint32_t slewing_bit = 1u << 6;         ///< bit 6 of the word
+  static constexpr std::uint32_t bad_settings_bit = 1u << 7;    ///< bit 7 of the word
 
+  /// What the compensator does: bits 0–3.
   constexpr CompensatorState state() const noexcept { return static_cast<CompensatorState>(word & 15u); }
+  /// Whether the sample lies outside the training domain.
   constexpr bool outside_domain() const noexcept { return (word & outside_domain_bit) != 0; }
+  /// Whether the demand was clamped.
   constexpr bool clamped() const noexcept { return (word & clamped_bit) != 0; }
+  /// Whether the offset is on its way, slew limited.
   constexpr bool slewing() const noexcept { return (word & slewing_bit) != 0; }
+  /// Whether start was refused for faulty settings.
   constexpr bool bad_settings() const noexcept { return (word & bad_settings_bit) != 0; }
+  /// Number of the first sensor not used, counted from 1; 0 none.
   constexpr int sensor() const noexcept { return static_cast<int>(word >> 8 & 255u); }
+  /// Why that sensor is not used.
   constexpr SensorFault fault() const noexcept { return static_cast<SensorFault>(word >> 16 & 15u); }
+  /// How many sensors are not used; 255 for more.
   constexpr int unused_sensors() const noexcept { return static_cast<int>(word >> 20 & 255u); }
 
   /// The part of the word that tells about sensors. Numbers above 255 read 255.

@@ -13,6 +13,7 @@ namespace thermfit {
 
 /// Time that repeats or goes back, and steps longer than three times the usual one (the median) and ten times the usual
 /// scatter of steps above it. More than eight gaps in a batch are told as one finding that counts them.
+/// Nothing for a batch with fewer than three times. Allocates.
 inline std::vector<Finding> clock_findings(const Batch& batch) {
   std::vector<Finding> back, gaps;
   const Series clock(batch.time_s);
@@ -43,7 +44,8 @@ inline std::vector<Finding> clock_findings(const Batch& batch) {
   return back;
 }
 
-/// Cells of a channel that hold no number.
+/// Cells of a channel (rows, any unit) that hold no finite number, as one finding that counts them; nothing where all
+/// do. Allocates the finding.
 inline std::optional<Finding> missing_finding(const Eigen::Ref<const Vector>& column, const std::string& name) {
   Index count = 0, first = 0, last = 0;
   for (Index row = 0; row < column.size(); ++row) {

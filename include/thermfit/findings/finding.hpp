@@ -22,7 +22,7 @@ enum class FindingRule {
   unit        ///< values that hint at another unit
 };
 
-/// The rule's name in tables and JSON.
+/// The rule's name in tables and JSON. Does not allocate.
 inline std::string_view rule_name(FindingRule rule) {
   constexpr std::string_view names[] = {"time-gap", "time-back", "missing", "constant",  "stuck", "saturated",
                                         "stale",    "spike",     "jump",    "collinear", "unit"};
@@ -31,14 +31,14 @@ inline std::string_view rule_name(FindingRule rule) {
 
 /// One fault of one channel of a batch.
 struct Finding {
-  FindingRule rule;
+  FindingRule rule;     ///< which rule is broken
   std::string channel;  ///< name of the channel; `time` for the clock
-  Index first_row = 0;  ///< rows of the batch, from 0, both included
-  Index last_row = 0;
-  double figure = 0;  ///< what was measured …
-  double limit = 0;   ///< … and what the rule allows, in `unit`
-  std::string unit;
-  std::string note;  ///< what it means, in a few words
+  Index first_row = 0;  ///< row of the batch where it begins, counted from 0 …
+  Index last_row = 0;   ///< … and the last row it holds for
+  double figure = 0;    ///< what was measured …
+  double limit = 0;     ///< … and what the rule allows, in `unit`
+  std::string unit;     ///< of `figure` and `limit`: "K", "um", "s", "rows", …
+  std::string note;     ///< what it means, in a few words
 };
 
 }  // namespace thermfit

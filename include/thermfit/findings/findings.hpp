@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/compiled.hpp"
 #include "thermfit/findings/clock_findings.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/frozen_findings.hpp"
@@ -17,12 +18,13 @@ namespace thermfit {
 /// missing. Thresholds are multiples of each channel's own noise and resolution, so that they need no tuning and a
 /// coarse thermometer is not taken for a stuck one. Batches of less than 12 rows are checked for clock, missing and
 /// constant values only. Allocates.
-inline std::vector<Finding> find_faults(const Batch& batch) {
+template <typename Scalar = double>
+std::vector<Finding> find_faults(const Batch& batch) {
   std::vector<Finding> findings = clock_findings(batch);
   std::vector<Index> switching = switching_rows(batch.inputs);
   for (const Finding& one : findings) switching.push_back(one.last_row);  // what happened in a gap is not known
   std::sort(switching.begin(), switching.end());
-  const Matrix smooth = detail::despiked(batch.temperatures.values);
+  const MatrixX<Scalar> smooth = detail::despiked<Scalar>(batch.temperatures.values);
   const auto check = [&](const Channels& channels, bool is_error) {
     for (Index c = 0; c < channels.count(); ++c) {
       const Series series(channels.values.col(c));
@@ -44,7 +46,7 @@ inline std::vector<Finding> find_faults(const Batch& batch) {
           continue;
         }
       }
-      const auto frozen = frozen_finding(batch, smooth, c, is_error, series, scale);
+      const auto frozen = frozen_finding<Scalar>(batch, smooth, c, is_error, series, scale);
       if (frozen) findings.push_back(*frozen);
       for (Finding& one : transient_findings(series, scale, switching, name, unit))
         if (!frozen || one.last_row < frozen->first_row || one.first_row > frozen->last_row + 1)
@@ -53,9 +55,10 @@ inline std::vector<Finding> find_faults(const Batch& batch) {
   };
   check(batch.temperatures, false);
   check(batch.errors, true);
-  for (Finding& one : redundancy_findings(batch)) findings.push_back(std::move(one));
+  for (Finding& one : redundancy_findings<Scalar>(batch)) findings.push_back(std::move(one));
   for (Finding& one : unit_findings(batch)) findings.push_back(std::move(one));
   return findings;
 }
+THERMFIT_COMPILED_TEMPLATE(std::vector<Finding> find_faults<double>(const Batch&));
 
 }  // namespace thermfit

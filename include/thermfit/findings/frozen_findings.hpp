@@ -34,12 +34,13 @@ inline std::vector<EqualRun> equal_runs(const std::vector<double>& values) {
 }
 
 /// Each column as the running median of five rows: a course without spikes of one or two.
-inline Matrix despiked(const Matrix& values) {
-  Matrix smooth = values;
+template <typename Scalar>
+MatrixX<Scalar> despiked(const MatrixX<Scalar>& values) {
+  MatrixX<Scalar> smooth = values;
   for (Index column = 0; column < values.cols(); ++column)
     for (Index row = 2; row + 2 < values.rows(); ++row) {
       if (!values.col(column).segment(row - 2, 5).allFinite()) continue;
-      std::array<double, 5> window;
+      std::array<Scalar, 5> window;
       std::copy_n(values.col(column).data() + row - 2, 5, window.begin());
       std::nth_element(window.begin(), window.begin() + 2, window.end());
       smooth(row, column) = window[2];
@@ -54,8 +55,9 @@ struct ExpectedMove {
   double range = 0, scatter = 0;
 };
 
-inline std::optional<ExpectedMove> expected_move(Matrix others, const Eigen::Ref<const Vector>& channel, Index first,
-                                                 Index last) {
+template <typename Scalar>
+std::optional<ExpectedMove> expected_move(MatrixX<Scalar> others, const Eigen::Ref<const VectorX<Scalar>>& channel,
+                                          Index first, Index last) {
   std::vector<Index> outside;
   for (Index row = 0; row < channel.size(); ++row)
     if ((row < first || row > last) && std::isfinite(channel(row)) && others.row(row).allFinite())
@@ -64,18 +66,18 @@ inline std::optional<ExpectedMove> expected_move(Matrix others, const Eigen::Ref
   if (others.cols() == 0 || count < 8) return std::nullopt;
   if (count < others.cols() + 8) others = others.rowwise().mean().eval();
   const Index columns = others.cols();
-  Matrix design(count, columns);
-  Vector target(count);
+  MatrixX<Scalar> design(count, columns);
+  VectorX<Scalar> target(count);
   for (Index i = 0; i < count; ++i) {
     design.row(i) = others.row(outside[static_cast<std::size_t>(i)]);
     target(i) = channel(outside[static_cast<std::size_t>(i)]);
   }
-  const Eigen::RowVectorXd means = design.colwise().mean();
+  const Eigen::Matrix<Scalar, 1, Eigen::Dynamic> means = design.colwise().mean();
   design.rowwise() -= means;
   target.array() -= target.mean();
-  Matrix normal = design.transpose() * design;
+  MatrixX<Scalar> normal = design.transpose() * design;
   normal.diagonal().array() += 1e-4 * normal.trace() / static_cast<double>(columns) + 1e-30;
-  const Vector weights = normal.ldlt().solve(design.transpose() * target);
+  const VectorX<Scalar> weights = normal.ldlt().solve(design.transpose() * target);
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (Index row = first; row <= last; ++row) {
     if (!others.row(row).allFinite()) continue;
@@ -88,8 +90,9 @@ inline std::optional<ExpectedMove> expected_move(Matrix others, const Eigen::Ref
                       std::sqrt((target - design * weights).squaredNorm() / static_cast<double>(count - columns))};
 }
 
-inline Matrix without_column(const Matrix& matrix, Index column) {
-  Matrix others(matrix.rows(), matrix.cols() - 1);
+template <typename Scalar>
+MatrixX<Scalar> without_column(const MatrixX<Scalar>& matrix, Index column) {
+  MatrixX<Scalar> others(matrix.rows(), matrix.cols() - 1);
   others.leftCols(column) = matrix.leftCols(column);
   others.rightCols(others.cols() - column) = matrix.rightCols(others.cols() - column);
   return others;
@@ -105,8 +108,11 @@ inline Matrix without_column(const Matrix& matrix, Index column) {
 /// own noise makes it improbable (less than one in a million in the whole batch); a run of ten or more at the end of a
 /// thermal error's range also when it is reached by a step of more than five times the resolution. The three longest
 /// runs are judged; one at the start of the batch from ten rows on, since a point far from the heat begins late.
-inline std::optional<Finding> frozen_finding(const Batch& batch, const Matrix& temperatures, Index column,
-                                             bool is_error, const Series& series, const SeriesScale& scale) {
+/// `column` counts within the temperatures or, where `is_error`, the thermal errors; `series` and `scale` are those of
+/// that channel. Allocates.
+template <typename Scalar>
+std::optional<Finding> frozen_finding(const Batch& batch, const MatrixX<Scalar>& temperatures, Index column,
+                                      bool is_error, const Series& series, const SeriesScale& scale) {
   const Channels& channels = is_error ? batch.errors : batch.temperatures;
   const std::string unit = is_error ? "um" : "K";
   std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
@@ -120,8 +126,9 @@ inline std::optional<Finding> frozen_finding(const Batch& batch, const Matrix& t
     const Index first = series.rows[run.first], last = series.rows[run.last];
     const bool improbable = run.length() >= 8 && static_cast<double>(run.length() - 1) * std::log(same) <
                                                      std::log(1e-6 / static_cast<double>(series.size()));
-    const auto move = detail::expected_move(is_error ? temperatures : detail::without_column(temperatures, column),
-                                            channels.values.col(column), first, last);
+    const auto move =
+        detail::expected_move<Scalar>(is_error ? temperatures : detail::without_column(temperatures, column),
+                                      channels.values.col(column), first, last);
     const double limit = move ? std::max(4 * scale.resolution, 6 * move->scatter) : 0;
     const bool moved = move && move->range > limit;
     const double value = series.values[run.first];
@@ -142,7 +149,7 @@ inline std::optional<Finding> frozen_finding(const Batch& batch, const Matrix& t
 }
 
 /// A thermal error that changes only every m-th row, m from 2 to 60: at least six changes and half of those possible,
-/// 19 of 20 of them in step.
+/// 19 of 20 of them in step. Nothing for any other. Allocates.
 inline std::optional<Finding> stale_finding(const Series& series, const std::string& name) {
   const std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
   for (std::size_t every = 60; every >= 2; --every) {

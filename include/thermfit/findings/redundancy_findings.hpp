@@ -14,10 +14,11 @@ namespace thermfit {
 /// Temperatures that earlier ones give, as a straight line of one or a linear combination of all, to less than a
 /// quarter of what rounding alone leaves between independent readings: sqrt(sum (b_i r_i)^2 / 12) with resolutions r_i.
 /// Each such channel is told once. Ordinary collinearity of thermometers is no fault. Channels that move by less than
-/// eight steps of their resolution tell nothing.
-inline std::vector<Finding> redundancy_findings(const Batch& batch) {
+/// eight steps of their resolution tell nothing, nor does a batch with a missing temperature. Allocates.
+template <typename Scalar = double>
+std::vector<Finding> redundancy_findings(const Batch& batch) {
   std::vector<Finding> findings;
-  const Matrix& values = batch.temperatures.values;
+  const MatrixX<Scalar>& values = batch.temperatures.values;
   if (!values.allFinite()) return findings;
   const Index rows = values.rows();
   std::vector<Index> used;
@@ -25,10 +26,10 @@ inline std::vector<Finding> redundancy_findings(const Batch& batch) {
   // How far `column` is from what `columns` give: residual scatter over rounding floor.
   const auto ratio = [&](Index column, double resolution, const std::vector<std::size_t>& chosen) {
     const auto count = static_cast<Index>(chosen.size());
-    Matrix design(rows, count + 1);
+    MatrixX<Scalar> design(rows, count + 1);
     design.col(0).setOnes();
     for (Index i = 0; i < count; ++i) design.col(i + 1) = values.col(used[chosen[static_cast<std::size_t>(i)]]);
-    const Vector weights = design.colPivHouseholderQr().solve(values.col(column));
+    const VectorX<Scalar> weights = design.colPivHouseholderQr().solve(values.col(column));
     double floor = resolution * resolution;
     for (Index i = 0; i < count; ++i)
       floor += std::pow(weights(i + 1) * resolutions[chosen[static_cast<std::size_t>(i)]], 2);

@@ -19,9 +19,10 @@ inline double median(std::vector<double> values) {
 
 /// The readings of a channel that there are, and the rows they are from.
 struct Series {
-  std::vector<double> values;
-  std::vector<Index> rows;
+  std::vector<double> values;  ///< in the order of the rows, finite
+  std::vector<Index> rows;     ///< row of the batch that each value is from, increasing
 
+  /// Leaves out what is not finite. Allocates.
   explicit Series(const Eigen::Ref<const Vector>& column) {
     for (Index row = 0; row < column.size(); ++row)
       if (std::isfinite(column(row))) {
@@ -29,22 +30,25 @@ struct Series {
         rows.push_back(row);
       }
   }
+  /// How many readings there are.
   std::size_t size() const { return values.size(); }
 };
 
 /// How finely a channel is written down and how much it shakes.
 struct SeriesScale {
-  double lowest = 0, highest = 0;
+  double lowest = 0;      ///< smallest value
+  double highest = 0;     ///< largest value
   double resolution = 0;  ///< smallest difference between two of its values; 0 for a constant channel
   double noise = 0;       ///< standard deviation, from the median absolute second difference; blind to drift and steps
 
+  /// From the smallest to the largest value.
   double range() const { return highest - lowest; }
   /// The larger of the noise and what rounding alone does.
   double shake() const { return std::max(noise, resolution / std::sqrt(12.0)); }
 };
 
 /// Scale of a series. Second differences of white noise have 6 times its variance; the median absolute value of a
-/// normal variable is 0.6745 of its standard deviation.
+/// normal variable is 0.6745 of its standard deviation. Without readings everything is 0. Allocates.
 inline SeriesScale series_scale(const Series& series) {
   SeriesScale scale;
   if (series.size() == 0) return scale;

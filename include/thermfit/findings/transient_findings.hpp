@@ -13,7 +13,7 @@
 
 namespace thermfit {
 
-/// Rows in which a known input has another value than in the row before.
+/// Rows in which a known input has another value than in the row before, increasing. Allocates.
 inline std::vector<Index> switching_rows(const Channels& inputs) {
   std::vector<Index> rows;
   if (inputs.count() == 0) return rows;
@@ -46,7 +46,7 @@ inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, 
 /// resolution, where that is more), and its neighbours' second differences have the opposite sign: a corner of the true
 /// course has not. A jump exceeds 12 times the noise (6 times the resolution) beside the local trend and is four times
 /// as large as the steps around it; a jump that is taken back within five rows is a spike too. Rows up to two after an
-/// input has switched, and the start of the batch, may jump.
+/// input has switched, and the start of the batch, may jump. `unit` is that of the series. Allocates.
 inline std::vector<Finding> transient_findings(const Series& series, const SeriesScale& scale,
                                                const std::vector<Index>& switching, const std::string& name,
                                                const std::string& unit) {

@@ -14,7 +14,7 @@ namespace thermfit {
 /// Values that make sense in another unit only. Temperatures: a start above 200 degC looks like kelvin; one above 50
 /// degC, or 25 K above the median of the others, like degrees Fahrenheit. Thermal errors: more than 5 mm looks like
 /// nanometres or counts; less than 0.5 um in all, finer than 0.002 um, while temperatures rose by 3 K or more, like
-/// millimetres.
+/// millimetres. Allocates.
 inline std::vector<Finding> unit_findings(const Batch& batch) {
   std::vector<Finding> findings;
   std::vector<double> starts;
