@@ -11,19 +11,25 @@
 
 namespace thermfit {
 
-/// Time that repeats or goes back, and steps longer than three times the usual one (the median) and ten times the usual
-/// scatter of steps above it. More than eight gaps in a batch are told as one finding that counts them.
+/// When a clock is at fault. Chosen so that clocks of data loggers, which are late by a part of a step, stay silent.
+struct ClockLimits {
+  double gap_steps = 3;       ///< a gap is longer than so many usual steps …
+  double gap_scatter = 10;    ///< … and longer than a usual step by so many standard deviations of the steps
+  std::size_t most_gaps = 8;  ///< more gaps in a batch are told as one finding that counts them
+};
+
+/// Time that repeats or goes back, and steps longer than the usual one (the median) and its scatter allow.
 /// Nothing for a batch with fewer than three times. Allocates.
-inline std::vector<Finding> clock_findings(const Batch& batch) {
+inline std::vector<Finding> clock_findings(const Batch& batch, const ClockLimits& limits = {}) {
   std::vector<Finding> back, gaps;
   const Series clock(batch.time_s);
-  if (clock.size() < 3) return {};
+  if (clock.size() <= 2) return {};  // one step has no usual one beside it
   std::vector<double> steps;
   for (std::size_t i = 1; i < clock.size(); ++i) steps.push_back(clock.values[i] - clock.values[i - 1]);
   const double usual = median(steps);
   std::vector<double> scatter;
   for (const double step : steps) scatter.push_back(std::abs(step - usual));
-  const double limit = std::max(3 * usual, usual + 10 * median(scatter) / 0.6745);
+  const double limit = std::max(limits.gap_steps * usual, usual + limits.gap_scatter * median(scatter) / normal_median);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i] <= 0)
       back.push_back(
@@ -33,7 +39,7 @@ inline std::vector<Finding> clock_findings(const Batch& batch) {
       gaps.push_back({FindingRule::time_gap, "time", clock.rows[i], clock.rows[i + 1], steps[i], limit, "s",
                       "rows are missing, the usual step is " + std::to_string(std::lround(usual)) + " s"});
   }
-  if (gaps.size() > 8) {
+  if (gaps.size() > limits.most_gaps) {
     Finding all = gaps.front();
     all.last_row = gaps.back().last_row;
     for (const Finding& gap : gaps) all.figure = std::max(all.figure, gap.figure);

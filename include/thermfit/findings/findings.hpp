@@ -14,13 +14,26 @@
 
 namespace thermfit {
 
+/// What every rule allows. The numbers are choices: with them the clean campaigns of data/ raise no alarm and each
+/// fault that tests/findings puts into them is told once.
+struct FindingLimits {
+  ClockLimits clock;               ///< gaps in time
+  FrozenLimits frozen;             ///< stuck and saturated channels
+  StaleLimits stale;               ///< thermal errors read less often than written
+  TransientLimits transient;       ///< spikes and jumps
+  RedundancyLimits redundancy;     ///< copies and computed temperatures
+  UnitLimits units;                ///< values of another unit
+  std::size_t constant_rows = 10;  ///< readings from which on a channel that never moves is told
+  std::size_t judged_rows =
+      12;  ///< readings from which on a channel is judged beyond clock, missing and constant values
+};
+
 /// Everything suspicious about a batch, in the order of its channels and rows. Values that are not finite count as
 /// missing. Thresholds are multiples of each channel's own noise and resolution, so that they need no tuning and a
-/// coarse thermometer is not taken for a stuck one. Batches of less than 12 rows are checked for clock, missing and
-/// constant values only. Allocates.
+/// coarse thermometer is not taken for a stuck one. Allocates.
 template <typename Scalar = double>
-std::vector<Finding> find_faults(const Batch& batch) {
-  std::vector<Finding> findings = clock_findings(batch);
+std::vector<Finding> find_faults(const Batch& batch, const FindingLimits& limits = {}) {
+  std::vector<Finding> findings = clock_findings(batch, limits.clock);
   std::vector<Index> switching = switching_rows(batch.inputs);
   for (const Finding& one : findings) switching.push_back(one.last_row);  // what happened in a gap is not known
   std::sort(switching.begin(), switching.end());
@@ -34,31 +47,31 @@ std::vector<Finding> find_faults(const Batch& batch) {
       if (const auto lost = missing_finding(channels.values.col(c), name)) findings.push_back(*lost);
       if (series.size() < 2) continue;
       if (scale.range() == 0) {
-        if (series.size() >= 10)
+        if (series.size() >= limits.constant_rows)
           findings.push_back({FindingRule::constant, name, series.rows.front(), series.rows.back(), 0, scale.resolution,
                               unit, "never moves: not connected, or a set value?"});
         continue;
       }
-      if (series.size() < 12) continue;
+      if (series.size() < limits.judged_rows) continue;
       if (is_error) {
-        if (const auto stale = stale_finding(series, name)) {
+        if (const auto stale = stale_finding(series, name, limits.stale)) {
           findings.push_back(*stale);
           continue;
         }
       }
-      const auto frozen = frozen_finding<Scalar>(batch, smooth, c, is_error, series, scale);
+      const auto frozen = frozen_finding<Scalar>(batch, smooth, c, is_error, series, scale, limits.frozen);
       if (frozen) findings.push_back(*frozen);
-      for (Finding& one : transient_findings(series, scale, switching, name, unit))
+      for (Finding& one : transient_findings(series, scale, switching, name, unit, limits.transient))
         if (!frozen || one.last_row < frozen->first_row || one.first_row > frozen->last_row + 1)
           findings.push_back(std::move(one));
     }
   };
   check(batch.temperatures, false);
   check(batch.errors, true);
-  for (Finding& one : redundancy_findings<Scalar>(batch)) findings.push_back(std::move(one));
-  for (Finding& one : unit_findings(batch)) findings.push_back(std::move(one));
+  for (Finding& one : redundancy_findings<Scalar>(batch, limits.redundancy)) findings.push_back(std::move(one));
+  for (Finding& one : unit_findings(batch, limits.units)) findings.push_back(std::move(one));
   return findings;
 }
-THERMFIT_COMPILED_TEMPLATE(std::vector<Finding> find_faults<double>(const Batch&));
+THERMFIT_COMPILED_TEMPLATE(std::vector<Finding> find_faults<double>(const Batch&, const FindingLimits&));
 
 }  // namespace thermfit

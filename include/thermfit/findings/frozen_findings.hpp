@@ -14,7 +14,35 @@
 
 namespace thermfit {
 
+/// When a run of one value cannot be what it seems. Lengths are in rows: short runs of a coarse or slow thermometer are
+/// ordinary, and a point far from the heat begins late.
+struct FrozenLimits {
+  std::size_t judged_runs = 3;  ///< the longest runs of a channel, so many, are judged
+  std::size_t moved_rows =
+      5;                   ///< a run so long is suspicious where the other temperatures say that the channel moved …
+  double moved_steps = 4;  ///< … by more steps of its resolution than this …
+  double moved_scatter = 6;         ///< … and more standard deviations of that prediction
+  std::size_t improbable_rows = 8;  ///< one so long, where the channel's own noise makes it improbable:
+  double improbable = 1e-6;         ///< to happen by chance in the whole batch
+  std::size_t clipped_rows =
+      10;                    ///< one so long at the end of a thermal error's range, where it is reached by a step …
+  double clipped_steps = 5;  ///< … of more steps of the resolution than this
+  std::size_t first_rows = 10;  ///< at the start of a batch shorter runs are not judged
+};
+
+/// When a thermal error is read less often than it is written down.
+struct StaleLimits {
+  std::size_t slowest_rows = 60;   ///< longest period that is looked for
+  std::size_t fewest_changes = 6;  ///< changes there must be, and half of those possible
+  std::size_t in_step = 19;        ///< so many of `of` changes are in step
+  std::size_t of = 20;             ///< see `in_step`
+};
+
 namespace detail {
+
+/// Rows that a prediction needs beyond its columns, and the ridge it takes as a share of the mean variance.
+constexpr Index rows_beside_prediction = 8;
+constexpr double prediction_ridge = 1e-4;
 
 /// Readings first … last of a series that are all the same.
 struct EqualRun {
@@ -63,8 +91,8 @@ std::optional<ExpectedMove> expected_move(MatrixX<Scalar> others, const Eigen::R
     if ((row < first || row > last) && std::isfinite(channel(row)) && others.row(row).allFinite())
       outside.push_back(row);
   const Index count = static_cast<Index>(outside.size());
-  if (others.cols() == 0 || count < 8) return std::nullopt;
-  if (count < others.cols() + 8) others = others.rowwise().mean().eval();
+  if (others.cols() == 0 || count < rows_beside_prediction) return std::nullopt;
+  if (count < others.cols() + rows_beside_prediction) others = others.rowwise().mean().eval();
   const Index columns = others.cols();
   MatrixX<Scalar> design(count, columns);
   VectorX<Scalar> target(count);
@@ -76,7 +104,7 @@ std::optional<ExpectedMove> expected_move(MatrixX<Scalar> others, const Eigen::R
   design.rowwise() -= means;
   target.array() -= target.mean();
   MatrixX<Scalar> normal = design.transpose() * design;
-  normal.diagonal().array() += 1e-4 * normal.trace() / static_cast<double>(columns) + 1e-30;
+  normal.diagonal().array() += prediction_ridge * normal.trace() / static_cast<double>(columns) + 1e-30;
   const VectorX<Scalar> weights = normal.ldlt().solve(design.transpose() * target);
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (Index row = first; row <= last; ++row) {
@@ -103,38 +131,39 @@ MatrixX<Scalar> without_column(const MatrixX<Scalar>& matrix, Index column) {
 /// The longest run of one value that cannot be what it seems, or nothing. `temperatures` are those of the batch,
 /// despiked.
 ///
-/// A run of five rows or more is suspicious when the other temperatures say that the channel moved by more than four
-/// steps of its resolution and six times the scatter of that prediction; a run of eight or more also when the channel's
-/// own noise makes it improbable (less than one in a million in the whole batch); a run of ten or more at the end of a
-/// thermal error's range also when it is reached by a step of more than five times the resolution. The three longest
-/// runs are judged; one at the start of the batch from ten rows on, since a point far from the heat begins late.
+/// A run is suspicious when the other temperatures say that the channel moved, when the channel's own noise makes it
+/// improbable, and, at the end of a thermal error's range, when it is reached in full motion.
 /// `column` counts within the temperatures or, where `is_error`, the thermal errors; `series` and `scale` are those of
 /// that channel. Allocates.
 template <typename Scalar>
 std::optional<Finding> frozen_finding(const Batch& batch, const MatrixX<Scalar>& temperatures, Index column,
-                                      bool is_error, const Series& series, const SeriesScale& scale) {
+                                      bool is_error, const Series& series, const SeriesScale& scale,
+                                      const FrozenLimits& limits = {}) {
   const Channels& channels = is_error ? batch.errors : batch.temperatures;
   const std::string unit = is_error ? "um" : "K";
   std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
   std::stable_sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.length() > b.length(); });
-  if (runs.size() > 3) runs.resize(3);
+  if (runs.size() > limits.judged_runs) runs.resize(limits.judged_runs);
   // Two normal readings fall on the same step of the resolution with probability resolution / (2 sqrt(pi) noise).
   const double same = scale.noise > 0 ? std::min(1.0, scale.resolution / (2 * std::sqrt(M_PI) * scale.noise)) : 1;
   for (const detail::EqualRun& run : runs) {
-    if (run.length() < 5) break;
-    if (run.first == 0 && run.length() < 10) continue;
+    if (run.length() < limits.moved_rows) break;
+    if (run.first == 0 && run.length() < limits.first_rows) continue;
     const Index first = series.rows[run.first], last = series.rows[run.last];
-    const bool improbable = run.length() >= 8 && static_cast<double>(run.length() - 1) * std::log(same) <
-                                                     std::log(1e-6 / static_cast<double>(series.size()));
+    const bool improbable =
+        run.length() >= limits.improbable_rows && static_cast<double>(run.length() - 1) * std::log(same) <
+                                                      std::log(limits.improbable / static_cast<double>(series.size()));
     const auto move =
         detail::expected_move<Scalar>(is_error ? temperatures : detail::without_column(temperatures, column),
                                       channels.values.col(column), first, last);
-    const double limit = move ? std::max(4 * scale.resolution, 6 * move->scatter) : 0;
+    const double limit =
+        move ? std::max(limits.moved_steps * scale.resolution, limits.moved_scatter * move->scatter) : 0;
     const bool moved = move && move->range > limit;
     const double value = series.values[run.first];
     const bool at_end = value == scale.highest || value == scale.lowest;
     const double arrival = run.first > 0 ? std::abs(value - series.values[run.first - 1]) : 0;
-    const bool clipped = is_error && at_end && run.length() >= 10 && arrival > 5 * scale.resolution;
+    const bool clipped =
+        is_error && at_end && run.length() >= limits.clipped_rows && arrival > limits.clipped_steps * scale.resolution;
     if (!improbable && !moved && !clipped) continue;
     const FindingRule rule = is_error && at_end ? FindingRule::saturated : FindingRule::stuck;
     const std::string rows = std::to_string(run.length()) + " rows of one value";
@@ -142,21 +171,25 @@ std::optional<Finding> frozen_finding(const Batch& batch, const MatrixX<Scalar>&
     if (moved)
       return Finding{rule, name, first, last, move->range, limit, unit, rows + "; by the other points it moved"};
     if (clipped)
-      return Finding{rule, name, first, last, arrival, 5 * scale.resolution, unit, rows + ", reached in full motion"};
+      return Finding{rule,    name,
+                     first,   last,
+                     arrival, limits.clipped_steps * scale.resolution,
+                     unit,    rows + ", reached in full motion"};
     return Finding{rule, name, first, last, 0, scale.noise, unit, rows + "; its noise elsewhere rules that out"};
   }
   return std::nullopt;
 }
 
-/// A thermal error that changes only every m-th row, m from 2 to 60: at least six changes and half of those possible,
-/// 19 of 20 of them in step. Nothing for any other. Allocates.
-inline std::optional<Finding> stale_finding(const Series& series, const std::string& name) {
+/// A thermal error that changes only every m-th row, m from 2 on: enough changes, and nearly all of them in step.
+/// Nothing for any other. Allocates.
+inline std::optional<Finding> stale_finding(const Series& series, const std::string& name,
+                                            const StaleLimits& limits = {}) {
   const std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
-  for (std::size_t every = 60; every >= 2; --every) {
-    if (runs.size() < 7 || 2 * runs.size() * every < series.size()) continue;
+  for (std::size_t every = limits.slowest_rows; every >= 2; --every) {
+    if (runs.size() <= limits.fewest_changes || 2 * runs.size() * every < series.size()) continue;
     std::vector<std::size_t> in_step(every, 0);
     for (std::size_t r = 1; r < runs.size(); ++r) ++in_step[runs[r].first % every];
-    if (20 * *std::max_element(in_step.begin(), in_step.end()) < 19 * (runs.size() - 1)) continue;
+    if (limits.of * *std::max_element(in_step.begin(), in_step.end()) < limits.in_step * (runs.size() - 1)) continue;
     return Finding{FindingRule::stale,
                    name,
                    series.rows.front(),

@@ -11,12 +11,20 @@
 
 namespace thermfit {
 
-/// Temperatures that earlier ones give, as a straight line of one or a linear combination of all, to less than a
-/// quarter of what rounding alone leaves between independent readings: sqrt(sum (b_i r_i)^2 / 12) with resolutions r_i.
-/// Each such channel is told once. Ordinary collinearity of thermometers is no fault. Channels that move by less than
-/// eight steps of their resolution tell nothing, nor does a batch with a missing temperature. Allocates.
+/// When a temperature is redundant. Independent readings differ by what rounding leaves, a copy by nothing: a quarter
+/// lies between with room on both sides.
+struct RedundancyLimits {
+  double of_rounding = 0.25;  ///< what is left of a copy, over what rounding alone leaves between independent readings
+  double moved_steps = 8;     ///< a channel that moved by fewer steps of its resolution tells nothing
+  Index rows_beside = 12;     ///< rows that there must be beyond the columns a channel is compared with
+};
+
+/// Temperatures that earlier ones give, as a straight line of one or a linear combination of all, to less than
+/// `of_rounding` of what rounding alone leaves between independent readings: sqrt(sum (b_i r_i)^2 / 12) with
+/// resolutions r_i. Each such channel is told once. Ordinary collinearity of thermometers is no fault. A batch with a
+/// missing temperature tells nothing. Allocates.
 template <typename Scalar = double>
-std::vector<Finding> redundancy_findings(const Batch& batch) {
+std::vector<Finding> redundancy_findings(const Batch& batch, const RedundancyLimits& limits = {}) {
   std::vector<Finding> findings;
   const MatrixX<Scalar>& values = batch.temperatures.values;
   if (!values.allFinite()) return findings;
@@ -39,23 +47,23 @@ std::vector<Finding> redundancy_findings(const Batch& batch) {
   };
   for (Index c = 0; c < values.cols(); ++c) {
     const SeriesScale scale = series_scale(Series(values.col(c)));
-    if (scale.range() < 8 * scale.resolution || scale.range() == 0) continue;
+    if (scale.range() < limits.moved_steps * scale.resolution || scale.range() == 0) continue;
     const std::string& name = batch.temperatures.names[static_cast<std::size_t>(c)];
     const auto add = [&](double figure, const std::string& note) {
-      findings.push_back({FindingRule::collinear, name, 0, rows - 1, figure, 0.25, "of rounding", note});
+      findings.push_back({FindingRule::collinear, name, 0, rows - 1, figure, limits.of_rounding, "of rounding", note});
     };
     bool redundant = false;
     std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < used.size() && !redundant && rows >= 12; ++i) {
+    for (std::size_t i = 0; i < used.size() && !redundant && rows >= limits.rows_beside; ++i) {
       all.push_back(i);
       const double figure = ratio(c, scale.resolution, {i});
-      redundant = figure < 0.25;
+      redundant = figure < limits.of_rounding;
       if (redundant)
         add(figure, "the same as " + batch.temperatures.names[static_cast<std::size_t>(used[i])] + ": a copy?");
     }
-    if (!redundant && all.size() > 1 && rows >= static_cast<Index>(all.size()) + 12) {
+    if (!redundant && all.size() > 1 && rows >= static_cast<Index>(all.size()) + limits.rows_beside) {
       const double figure = ratio(c, scale.resolution, all);
-      redundant = figure < 0.25;
+      redundant = figure < limits.of_rounding;
       if (redundant) add(figure, "a combination of the points before it: computed?");
     }
     if (redundant) continue;

@@ -17,6 +17,9 @@ inline double median(std::vector<double> values) {
   return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
+/// Median absolute value of a standard normal variable: quantile .75.
+constexpr double normal_median = 0.6745;
+
 /// The readings of a channel that there are, and the rows they are from.
 struct Series {
   std::vector<double> values;  ///< in the order of the rows, finite
@@ -47,8 +50,8 @@ struct SeriesScale {
   double shake() const { return std::max(noise, resolution / std::sqrt(12.0)); }
 };
 
-/// Scale of a series. Second differences of white noise have 6 times its variance; the median absolute value of a
-/// normal variable is 0.6745 of its standard deviation. Without readings everything is 0. Allocates.
+/// Scale of a series. Second differences of white noise have 6 times its variance, and their median absolute value is
+/// `normal_median` of its standard deviation. Without readings everything is 0. Allocates.
 inline SeriesScale series_scale(const Series& series) {
   SeriesScale scale;
   if (series.size() == 0) return scale;
@@ -64,7 +67,7 @@ inline SeriesScale series_scale(const Series& series) {
   std::vector<double> second;
   for (std::size_t i = 1; i + 1 < series.size(); ++i)
     second.push_back(std::abs(series.values[i - 1] - 2 * series.values[i] + series.values[i + 1]));
-  scale.noise = second.empty() ? 0 : median(std::move(second)) / 0.6745 / std::sqrt(6.0);
+  scale.noise = second.empty() ? 0 : median(std::move(second)) / normal_median / std::sqrt(6.0);
   return scale;
 }
 

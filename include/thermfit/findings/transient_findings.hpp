@@ -13,6 +13,20 @@
 
 namespace thermfit {
 
+/// When a reading is a spike or a jump. In multiples of the noise, so that normal noise of any size stays silent in
+/// batches of 10 000s of rows; in steps of the resolution where rounding is coarser than the noise.
+struct TransientLimits {
+  double spike_noise = 8;      ///< a spike leaves the readings around it by so many standard deviations …
+  double spike_steps = 5;      ///< … or steps of the resolution, where that is more
+  double corner_share = 0.25;  ///< beside a spike the course bends back by this share of it; at a corner it does not
+  double jump_noise = 12;      ///< a jump exceeds the local trend by so many standard deviations …
+  double jump_steps = 6;       ///< … or steps of the resolution, where that is more
+  double jump_over_steps = 4;  ///< … and is so many times as large as each of the steps around it
+  std::size_t back_within_rows = 5;  ///< a jump that is taken back within so many rows is a spike
+  double back_share = 0.3;           ///< taken back: but for this share
+  Index settling_rows = 2;           ///< so many rows after an input has switched may jump
+};
+
 /// Rows in which a known input has another value than in the row before, increasing. Allocates.
 inline std::vector<Index> switching_rows(const Channels& inputs) {
   std::vector<Index> rows;
@@ -25,15 +39,15 @@ inline std::vector<Index> switching_rows(const Channels& inputs) {
 namespace detail {
 
 /// Steps from one reading to the next that are no part of a smooth course: beyond the limit away from the steps around
-/// and four times as large as each of them. `step[i]` leads to reading i.
-inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, double limit) {
+/// and so many times as large as each of them. Step i leads to reading i.
+inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, double limit, double over_steps) {
   std::vector<std::size_t> found;
   const auto step = [&](std::size_t i) { return values[i] - values[i - 1]; };
   for (std::size_t i = 3; i + 2 < values.size(); ++i) {
     std::array<double, 4> around{step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
     std::sort(around.begin(), around.end());
     const double trend = (around[1] + around[2]) / 2, largest = std::max(std::abs(around[0]), std::abs(around[3]));
-    if (std::abs(step(i) - trend) > limit && std::abs(step(i)) > 4 * largest) found.push_back(i);
+    if (std::abs(step(i) - trend) > limit && std::abs(step(i)) > over_steps * largest) found.push_back(i);
   }
   return found;
 }
@@ -42,22 +56,21 @@ inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, 
 
 /// Spikes and jumps of a series, in order of rows; `switching` holds rows in order.
 ///
-/// A spike leaves the range of the two readings before and the two after by more than 8 times the noise (5 times the
-/// resolution, where that is more), and its neighbours' second differences have the opposite sign: a corner of the true
-/// course has not. A jump exceeds 12 times the noise (6 times the resolution) beside the local trend and is four times
-/// as large as the steps around it; a jump that is taken back within five rows is a spike too. Rows up to two after an
-/// input has switched, and the start of the batch, may jump. `unit` is that of the series. Allocates.
+/// A spike leaves the range of the two readings before and the two after, and its neighbours' second differences have
+/// the opposite sign: a corner of the true course has not. A jump leaves the local trend and is larger than the steps
+/// around it; a jump that is soon taken back is a spike too. Rows just after an input has switched, and the start of
+/// the batch, may jump. `unit` is that of the series. Allocates.
 inline std::vector<Finding> transient_findings(const Series& series, const SeriesScale& scale,
                                                const std::vector<Index>& switching, const std::string& name,
-                                               const std::string& unit) {
+                                               const std::string& unit, const TransientLimits& limits = {}) {
   const std::vector<double>& x = series.values;
-  const double spike_limit = std::max(8 * scale.noise, 5 * scale.resolution);
-  const double jump_limit = std::max(12 * scale.noise, 6 * scale.resolution);
+  const double spike_limit = std::max(limits.spike_noise * scale.noise, limits.spike_steps * scale.resolution);
+  const double jump_limit = std::max(limits.jump_noise * scale.noise, limits.jump_steps * scale.resolution);
   std::vector<Finding> findings;
   const auto explained = [&](std::size_t i) {
     const Index row = series.rows[i];
     const auto at = std::upper_bound(switching.begin(), switching.end(), row);
-    return row > series.rows[i - 1] + 1 || (at != switching.begin() && row <= *std::prev(at) + 2);
+    return row > series.rows[i - 1] + 1 || (at != switching.begin() && row <= *std::prev(at) + limits.settling_rows);
   };
   const auto bend = [&](std::size_t i) { return x[i] - (x[i - 1] + x[i + 1]) / 2; };
   std::vector<bool> spiked(x.size(), false);
@@ -65,20 +78,20 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
     const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[i + 1], x[i + 2]});
     const double beyond = std::max(x[i] - high, low - x[i]);
     if (beyond <= spike_limit || explained(i)) continue;
-    const double sign = x[i] > high ? 1 : -1, size = sign * bend(i);
-    if (-sign * bend(i - 1) < size / 4 || -sign * bend(i + 1) < size / 4) continue;
+    const double sign = x[i] > high ? 1 : -1, size = sign * bend(i), back = limits.corner_share * size;
+    if (-sign * bend(i - 1) < back || -sign * bend(i + 1) < back) continue;
     spiked[i] = true;
     findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[i], beyond, spike_limit, unit,
                         "off the readings around it: contact, interference?"});
   }
-  const std::vector<std::size_t> steps = detail::abrupt_steps(x, jump_limit);
+  const std::vector<std::size_t> steps = detail::abrupt_steps(x, jump_limit, limits.jump_over_steps);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const std::size_t i = steps[k];
     const double size = x[i] - x[i - 1];
     if (spiked[i] || spiked[i - 1]) continue;
-    if (k + 1 < steps.size() && steps[k + 1] - i <= 5) {
+    if (k + 1 < steps.size() && steps[k + 1] - i <= limits.back_within_rows) {
       const double back = x[steps[k + 1]] - x[steps[k + 1] - 1];
-      if (size * back < 0 && std::abs(size + back) < 0.3 * std::abs(size)) {
+      if (size * back < 0 && std::abs(size + back) < limits.back_share * std::abs(size)) {
         findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[steps[k + 1] - 1], std::abs(size),
                             jump_limit, unit, "off the readings around them: contact, interference?"});
         ++k;

@@ -11,11 +11,21 @@
 
 namespace thermfit {
 
-/// Values that make sense in another unit only. Temperatures: a start above 200 degC looks like kelvin; one above 50
-/// degC, or 25 K above the median of the others, like degrees Fahrenheit. Thermal errors: more than 5 mm looks like
-/// nanometres or counts; less than 0.5 um in all, finer than 0.002 um, while temperatures rose by 3 K or more, like
-/// millimetres. Allocates.
-inline std::vector<Finding> unit_findings(const Batch& batch) {
+/// When values make sense in another unit only. A batch starts near the temperature of a workshop, 10 to 40 degC, which
+/// is 283 to 313 K and 50 to 104 degF; a machine tool is off by micrometres to some hundred.
+struct UnitLimits {
+  double kelvin_start_degC = 200;     ///< a temperature that starts above looks like kelvin
+  double fahrenheit_start_degC = 50;  ///< one that starts above, like degrees Fahrenheit
+  double fahrenheit_above_K = 25;     ///< so does one that starts so far above the median of the others
+  double largest_error_um = 5000;     ///< a thermal error beyond looks like nanometres or counts
+  double smallest_range_um = 0.5;     ///< one that moves less in all …
+  double finest_step_um = 0.002;      ///< … and is written down finer …
+  double warmed_by_K = 3;             ///< … while some temperature rose by more, looks like millimetres
+};
+
+/// Values that make sense in another unit only, judged by where temperatures start and how thermal errors move.
+/// Allocates.
+inline std::vector<Finding> unit_findings(const Batch& batch, const UnitLimits& limits = {}) {
   std::vector<Finding> findings;
   std::vector<double> starts;
   double largest_rise = 0;
@@ -35,22 +45,24 @@ inline std::vector<Finding> unit_findings(const Batch& batch) {
     const auto add = [&](double figure, double limit, const std::string& note) {
       findings.push_back({FindingRule::unit, name, 0, 0, figure, limit, "degC", note});
     };
-    if (start > 200)
-      add(start, 200, "starts as kelvin do: name the unit, " + name + " [K]");
-    else if (start > 50)
-      add(start, 50, "starts as degrees Fahrenheit do: name the unit, " + name + " [degF]");
-    else if (others.size() > 1 && start - middle > 25)
-      add(start, middle + 25, "starts far above the others: degrees Fahrenheit?");
+    if (start > limits.kelvin_start_degC)
+      add(start, limits.kelvin_start_degC, "starts as kelvin do: name the unit, " + name + " [K]");
+    else if (start > limits.fahrenheit_start_degC)
+      add(start, limits.fahrenheit_start_degC, "starts as degrees Fahrenheit do: name the unit, " + name + " [degF]");
+    else if (others.size() > 1 && start - middle > limits.fahrenheit_above_K)
+      add(start, middle + limits.fahrenheit_above_K, "starts far above the others: degrees Fahrenheit?");
   }
   for (Index c = 0; c < batch.errors.count(); ++c) {
     const Series series(batch.errors.values.col(c));
     const SeriesScale scale = series_scale(series);
     const std::string& name = batch.errors.names[static_cast<std::size_t>(c)];
     const double size = std::max(std::abs(scale.lowest), std::abs(scale.highest));
-    if (size > 5000)
-      findings.push_back({FindingRule::unit, name, 0, 0, size, 5000, "um", "too much for micrometres: nm or counts?"});
-    else if (scale.range() > 0 && scale.range() < 0.5 && scale.resolution < 0.002 && largest_rise > 3)
-      findings.push_back({FindingRule::unit, name, 0, 0, scale.range(), 0.5, "um",
+    if (size > limits.largest_error_um)
+      findings.push_back({FindingRule::unit, name, 0, 0, size, limits.largest_error_um, "um",
+                          "too much for micrometres: nm or counts?"});
+    else if (scale.range() > 0 && scale.range() < limits.smallest_range_um &&
+             scale.resolution < limits.finest_step_um && largest_rise > limits.warmed_by_K)
+      findings.push_back({FindingRule::unit, name, 0, 0, scale.range(), limits.smallest_range_um, "um",
                           "too little for micrometres: name the unit, " + name + " [mm]"});
   }
   return findings;
