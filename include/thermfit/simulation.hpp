@@ -1,0 +1,11 @@
+#pragma once
+
+/// A machine as a lumped thermal network: what it is, what drives it, what is added to its physics, and how it is
+/// fitted to a campaign.
+
+#include "thermfit/calibration/calibrate.hpp"
+#include "thermfit/effects/catalogue.hpp"
+#include "thermfit/network/excitation.hpp"
+#include "thermfit/network/network_check.hpp"
+#include "thermfit/network/simulate.hpp"
+#include "thermfit/network/thermal_network.hpp"
