@@ -55,9 +55,9 @@ int run_command(const Command& command, const std::vector<std::string>& words, C
 
 }  // namespace
 
-int run(const std::vector<std::string>& words) {
+int run(const std::vector<std::string>& words, Console::Wording wording) {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is met as a failed write, where it can be judged
-  Console console;
+  Console console(wording);
   if (words.empty()) {
     console.note("a command is missing\n" + overview());
     return code(Exit::failed);

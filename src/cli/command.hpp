@@ -35,7 +35,8 @@ struct Command {
 /// The commands, in the order of the work; defined in commands/all.cpp.
 const std::vector<Command>& all_commands();
 
-/// Runs the command that `words` (argv without the program) names; prints errors; returns the process exit code.
-int run(const std::vector<std::string>& words);
+/// Runs the command that `words` (argv without the program) names; prints errors in the `wording` of
+/// the command line (none: as they come); returns the process exit code.
+int run(const std::vector<std::string>& words, Console::Wording wording = nullptr);
 
 }  // namespace thermfit::cli

@@ -14,7 +14,7 @@ namespace thermfit::cli {
 void Console::note(std::string_view text) const {
   progress({});
   std::string line = "thermfit: ";
-  line += text;
+  line += wording_ ? wording_(text) : std::string(text);
   line += '\n';
   [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, line.data(), line.size());
 }

@@ -10,6 +10,11 @@ namespace thermfit::cli {
 
 class Console {
  public:
+  /// Puts a remark into the words of the program that prints it.
+  using Wording = std::string (*)(std::string_view);
+
+  explicit Console(Wording wording = nullptr) : wording_(wording) {}
+
   /// Adds to the result. Nothing is written before finish(), unless streaming.
   void print(std::string_view text) { result_ += text; }
   void line(std::string_view text = {}) {
@@ -17,7 +22,7 @@ class Console {
     result_ += '\n';
   }
 
-  /// A remark on stderr, `thermfit: text`, at once.
+  /// A remark on stderr, `thermfit: text` in the console's wording, at once.
   void note(std::string_view text) const;
 
   /// A transient progress line on stderr, only where stderr is a terminal; an empty text clears it.
@@ -36,6 +41,7 @@ class Console {
   void finish();
 
  private:
+  Wording wording_;
   std::string result_;
   std::string path_;
 };

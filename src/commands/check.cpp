@@ -1,8 +1,9 @@
 #include <algorithm>
 
-#include "cli/campaign_options.hpp"
 #include "commands/commands.hpp"
-#include "report/check_report.hpp"
+#include "options/campaign_options.hpp"
+#include "report/check_json.hpp"
+#include "report/check_text.hpp"
 #include "thermfit/findings/findings.hpp"
 
 namespace thermfit::cli {

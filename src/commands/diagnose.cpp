@@ -1,11 +1,10 @@
-#include "thermfit/diagnosis/diagnose.hpp"
-
 #include <algorithm>
 
-#include "cli/campaign_options.hpp"
 #include "commands/commands.hpp"
+#include "options/campaign_options.hpp"
 #include "report/diagnosis_json.hpp"
 #include "report/diagnosis_text.hpp"
+#include "thermfit/diagnosis/diagnose.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/files/atomic_file.hpp"

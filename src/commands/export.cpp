@@ -1,9 +1,9 @@
 #include "export/export.hpp"
 
 #include "cli/command.hpp"
-#include "cli/compensation_options.hpp"
 #include "commands/commands.hpp"
 #include "export/source_text.hpp"
+#include "options/compensation_options.hpp"
 #include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {

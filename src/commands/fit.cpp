@@ -1,10 +1,10 @@
 #include <filesystem>
 
-#include "cli/campaign_options.hpp"
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
-#include "commands/fit_options.hpp"
-#include "report/model_report.hpp"
+#include "options/campaign_options.hpp"
+#include "options/fit_options.hpp"
+#include "report/model_text.hpp"
 #include "thermfit/fit/jackknife.hpp"
 #include "thermfit/fit/train.hpp"
 #include "thermfit/io/json/model.hpp"

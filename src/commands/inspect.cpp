@@ -1,7 +1,7 @@
 #include "cli/command.hpp"
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
-#include "report/model_report.hpp"
+#include "report/model_text.hpp"
 #include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {

@@ -1,9 +1,9 @@
 #include "thermfit/model/predict.hpp"
 
-#include "cli/campaign_options.hpp"
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
-#include "commands/fit_options.hpp"
+#include "options/campaign_options.hpp"
+#include "options/fit_options.hpp"
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/json/model.hpp"
 #include "thermfit/number.hpp"

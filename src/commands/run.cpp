@@ -1,10 +1,10 @@
 #include <cmath>
 
 #include "cli/command.hpp"
-#include "cli/compensation_options.hpp"
 #include "cli/line_source.hpp"
 #include "commands/commands.hpp"
-#include "run/live_compensation.hpp"
+#include "commands/live_compensation.hpp"
+#include "options/compensation_options.hpp"
 #include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {
@@ -35,7 +35,7 @@ Exit run_run(const Arguments& arguments, Console& console) {
   do {
     if (source.next(text, 0) != LineSource::Got::line)
       throw Error("standard input", "no line", "a line of column names");
-  } while (live.is_comment(text));
+  } while (!CsvLineReader::has_content(text));
   live.read_header(text, source.line_number());
   console.line(live.answer_header());
   console.flush();
@@ -43,7 +43,7 @@ Exit run_run(const Arguments& arguments, Console& console) {
   for (;;) {
     const LineSource::Got got = source.next(text, watchdog_s);
     if (got == LineSource::Got::end) break;
-    if (got == LineSource::Got::line && live.is_comment(text)) continue;
+    if (got == LineSource::Got::line && !CsvLineReader::has_content(text)) continue;
     const bool readable = got == LineSource::Got::line && live.read_readings(text);
     if (got == LineSource::Got::line && !readable && bad_lines++ < 10)
       console.note("standard input:" + std::to_string(source.line_number()) +

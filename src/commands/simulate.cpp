@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <set>
 
-#include "cli/campaign_options.hpp"
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
+#include "options/campaign_options.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/files/atomic_file.hpp"

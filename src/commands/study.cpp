@@ -1,9 +1,10 @@
 #include <filesystem>
 
-#include "cli/campaign_options.hpp"
 #include "commands/commands.hpp"
-#include "commands/fit_options.hpp"
-#include "report/study_report.hpp"
+#include "options/campaign_options.hpp"
+#include "options/fit_options.hpp"
+#include "report/study_json.hpp"
+#include "report/study_text.hpp"
 #include "thermfit/io/json/campaign.hpp"
 
 namespace thermfit::cli {
@@ -78,7 +79,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
   report.study = study(observe(campaign, report.reference), options);
   if (const auto path = arguments.value("--output")) console.write_to(*path);
   if (arguments.has("--json"))
-    console.line(study_to_json(report).dump(1));
+    console.print(study_json(report));
   else
     print_study(report, console);
   return judge(report, arguments, console);

@@ -1,4 +1,7 @@
-#include "report/study_report.hpp"
+#include "report/study_json.hpp"
+
+#include "options/field_flags.hpp"
+#include "thermfit/io/json/node.hpp"
 #include "thermfit/version.hpp"
 
 namespace thermfit::cli {
@@ -49,7 +52,7 @@ Json step_json(const StudyReport& r, const SweepStep& step, bool whole) {
 Json left_out_json(const StudyReport& r, const LeftOutMethod& row) {
   Json result{{"method", name(row.method)}, {"components", row.components}};
   if (!row.result) {
-    result["refusal"] = row.refusal;
+    result["refusal"] = with_flags(row.refusal);
     return result;
   }
   Json errors = Json::object();
@@ -66,7 +69,7 @@ Json left_out_json(const StudyReport& r, const LeftOutMethod& row) {
 
 }  // namespace
 
-Json study_to_json(const StudyReport& r) {
+std::string study_json(const StudyReport& r) {
   Json document{{"format", "thermfit-study/1"},
                 {"tool_version", THERMFIT_VERSION},
                 {"reference", r.reference == TemperatureReference::rise ? "rise" : "absolute"},
@@ -82,7 +85,7 @@ Json study_to_json(const StudyReport& r) {
   document["methods"] = Json::array();
   for (const StudiedMethod& method : r.study.methods) {
     Json one{{"method", name(method.method)}, {"selection", name(method.selection)}, {"components", method.components}};
-    if (!method.refusal.empty()) one["refusal"] = method.refusal;
+    if (!method.refusal.empty()) one["refusal"] = with_flags(method.refusal);
     if (method.chosen()) one["chosen"] = step_json(r, *method.chosen(), true);
     one["sweep"] = Json::array();
     for (const auto& step : method.sweep)
@@ -97,7 +100,7 @@ Json study_to_json(const StudyReport& r) {
       document["published"]["figures"].push_back(
           {{"method", f.method}, {"points", f.points}, {"S_mean_um", f.S_mean_um}, {"S_std_um", f.S_std_um}});
   }
-  return document;
+  return document.dump(1) + '\n';
 }
 
 }  // namespace thermfit::cli

@@ -36,8 +36,8 @@ struct Batch {
   Channels temperatures;   ///< degC, absolute
   Channels errors;         ///< um, the responses
   Channels inputs;         ///< known inputs: spindle_rpm, feed_mm_min, coolant, …
-  Index dropped_rows = 0;  ///< rows the reader left out because a value was missing (`--missing drop`)
-  Index held_values = 0;   ///< missing values replaced by the last one of their channel (`--missing hold`)
+  Index dropped_rows = 0;  ///< rows the reader left out because a value was missing (MissingValues::drop)
+  Index held_values = 0;   ///< missing values replaced by the last one of their channel (MissingValues::hold)
 
   /// Number of samples, from whichever member has any. Does not allocate.
   Index rows() const {

@@ -60,8 +60,9 @@ inline std::optional<Finding> missing_finding(const Eigen::Ref<const Vector>& co
     last = row;
   }
   if (count == 0) return std::nullopt;
-  return Finding{FindingRule::missing,       name, first,    last,
-                 static_cast<double>(count), 0,    "values", "--missing drop or hold decides what becomes of them"};
+  return Finding{
+      FindingRule::missing,       name, first,    last,
+      static_cast<double>(count), 0,    "values", "CsvOptions::missing = drop or hold decides what becomes of them"};
 }
 
 }  // namespace thermfit

@@ -36,7 +36,7 @@ struct Spectrum {
   [[noreturn]] static void refuse(double condition) {
     throw Error("temperatures", "a condition number of 1e" + std::to_string(std::lround(std::log10(condition))),
                 "1e6 or less for a fit from moments",
-                "fit from rows (thermfit fit --row-wise), take fewer components or points, or use ridge regression");
+                "fit from rows (TrainingPlan::row_wise), take fewer components or points, or use ridge regression");
   }
 };
 

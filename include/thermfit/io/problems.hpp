@@ -18,12 +18,12 @@ class Errors : public Error {
     for (std::size_t i = 0; i < problems_.size(); ++i) {
       if (told[i]) continue;
       std::size_t more = 0;
-      for (std::size_t j = i + 1; is_of_whole_file(problems_[i]) && j < problems_.size(); ++j) {
-        if (!same_of_whole_files(problems_[i], problems_[j])) continue;
-        told[j] = true;
-        ++more;
-      }
       const std::string& place = problems_[i].place();
+      for (std::size_t j = i + 1; j < problems_.size(); ++j) {
+        if (!alike(problems_[i], problems_[j])) continue;
+        told[j] = true;
+        more += problems_[j].place() != place;
+      }
       std::string line = problems_[i].what();
       if (more > 0) line.insert(place.size(), " and " + std::to_string(more) + " more");
       text_ += (text_.empty() ? "" : "\n") + line;
@@ -39,10 +39,10 @@ class Errors : public Error {
     return !problem.place().empty() && problem.place().find(':') == std::string::npos;
   }
 
-  /// Alike but for the file, and not about one line of it.
-  static bool same_of_whole_files(const Error& a, const Error& b) {
-    return is_of_whole_file(a) && is_of_whole_file(b) && a.found() == b.found() && a.allowed() == b.allowed() &&
-           a.remedy() == b.remedy();
+  /// The same, or the same but for the file and not about one line of it.
+  static bool alike(const Error& a, const Error& b) {
+    return (a.place() == b.place() || (is_of_whole_file(a) && is_of_whole_file(b))) && a.found() == b.found() &&
+           a.allowed() == b.allowed() && a.remedy() == b.remedy();
   }
 
   std::vector<Error> problems_;
@@ -59,7 +59,8 @@ class Problems {
     all_.push_back(std::move(problem));
     if (all_.size() < most_) return;
     if (all_.size() == 1) throw all_.front();
-    throw Errors(std::move(all_), "stopped after " + std::to_string(most_) + " errors; --max-errors N shows more");
+    throw Errors(std::move(all_),
+                 "stopped after " + std::to_string(most_) + " errors; CsvOptions::max_errors = N shows more");
   }
 
   /// Throws what was collected, if anything: the Error itself when it is the only one.

@@ -48,7 +48,8 @@ inline Vector batch_column(const Batch& batch, const std::string& name, const st
     for (Index i = 0; i < rows; ++i)
       if (!std::isfinite(values(i)))
         throw Error(place, "column '" + name + "' has no value in sample " + std::to_string(i + 1),
-                    "complete values: it is " + purpose, "use --missing hold or --missing drop");
+                    "complete values: it is " + purpose,
+                    "use CsvOptions::missing = hold or CsvOptions::missing = drop");
     return values;
   }
   std::string known;

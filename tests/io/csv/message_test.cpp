@@ -28,7 +28,7 @@ std::string message_of(const std::string& text, const std::function<void(CsvOpti
 using namespace std::string_literals;
 const std::string cell = "correct the cell, or leave it empty if there was no reading";
 const std::string number = "allowed: a number such as 20.1; ";
-const std::string say_which = "--delimiter comma, semicolon or tab";
+const std::string say_which = "CsvOptions::separator = comma, semicolon or tab";
 
 const std::vector<Case> cases{
     // What is no table of text at all.
@@ -50,7 +50,7 @@ const std::vector<Case> cases{
      "a.csv:2: a line longer than 100 bytes; allowed: lines of a table; is this the right file?",
      [](CsvOptions& options) { options.max_line_bytes = 100; }},
     {"too many columns", "time_min,T1,T2,T3\n0,1,2,3\n",
-     "a.csv:1: 4 columns; allowed: at most 3; is this the right file, and the right --delimiter?",
+     "a.csv:1: 4 columns; allowed: at most 3; is this the right file, and the right CsvOptions::separator?",
      [](CsvOptions& options) { options.max_columns = 3; }},
     {"names in Latin-1",
      "time_min,T1 [\xB0"
@@ -60,7 +60,7 @@ const std::vector<Case> cases{
     // The header line.
     {"no header", "0,20,1\n1,21,2\n",
      "a.csv:1: numbers where the names of the columns should be; allowed: a header line; add one, or name the columns: "
-     "--columns NAME,NAME,…"},
+     "CsvOptions::columns = NAME,NAME,…"},
     {"an empty name", "time_min,,T1\n0,1,2\n", "a.csv:1:10: column 2 has no name; allowed: a name for each column"},
     {"a repeated name", "time_min,T1,Z,T1\n0,20,1,20\n",
      "a.csv:1:15: column 4 is called 'T1' like column 2; allowed: names that differ; rename one in the header line"},
@@ -70,10 +70,12 @@ const std::vector<Case> cases{
      "a.csv:1:10: a quote that is opened here and never closed; close the field on its line; a quote inside a field is "
      "written \"\""},
     {"another separator", "time_min|T1|Z\n0|20|1\n",
-     "a.csv: no temperature point; allowed: T1, T2, … or the names given by --temperatures; one column only: is the "
-     "separator another? --delimiter says which"},
+     "a.csv: no temperature point; allowed: T1, T2, … or the names given by CsvOptions::temperatures; one column only: "
+     "is the "
+     "separator another? CsvOptions::separator says which"},
     {"no temperature", "time_min,Temp,Z,note\n0,20,1,a\n",
-     "a.csv: no temperature point; allowed: T1, T2, … or the names given by --temperatures; columns there are: Temp, "
+     "a.csv: no temperature point; allowed: T1, T2, … or the names given by CsvOptions::temperatures; columns there "
+     "are: Temp, "
      "note"},
 
     // The dialect.
@@ -89,13 +91,16 @@ const std::vector<Case> cases{
          say_which},
     {"two decimal marks", "time_min;T1;Z\n0;20.5;1,5\n",
      "a.csv:2:8: '1,5' has a comma, and '20.5' (a.csv:2:3) has a point; allowed: one decimal mark in a file; say "
-     "--decimal comma or --decimal point; write numbers without thousands separators"},
+     "CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point; write numbers without thousands "
+     "separators"},
     {"decimal comma in quotes between commas", "time_min,T1\n0,\"20,5\"\n",
-     "a.csv:2:3: '20,5' in a comma-separated file may be a decimal number or grouped thousands; say --decimal comma if "
+     "a.csv:2:3: '20,5' in a comma-separated file may be a decimal number or grouped thousands; say "
+     "CsvOptions::decimal_mark = comma if "
      "it "
      "is a decimal number"},
     {"commas that may group thousands", "time_min\trpm\tT1\n0\t1,234\t20\n",
-     "a.csv:2:3: '1,234' may be a decimal number or grouped thousands, as all its like here; say --decimal comma if it "
+     "a.csv:2:3: '1,234' may be a decimal number or grouped thousands, as all its like here; say "
+     "CsvOptions::decimal_mark = comma if it "
      "is "
      "a decimal number; else write thousands without separators"},
 
@@ -116,15 +121,16 @@ const std::vector<Case> cases{
     {"two units for one column", "time_min,T1 [degC],Z\nmin,degF,um\n0,20,1\n",
      "a.csv:2:5: unit degF below a name that says degC; allowed: one unit for a column"},
     {"a clock of two units", "time_s,T1\n0,20\n",
-     "a.csv:1:1: time_s says s, --time-unit says min; allowed: one unit for a column",
+     "a.csv:1:1: time_s says s, CsvOptions::time_unit says min; allowed: one unit for a column",
      [](CsvOptions& options) { options.time_unit = "min"; }},
     {"two clocks", "time_min,Time,T1\n0,0,20\n",
-     "a.csv:1:10: Time may be the time, and so may time_min; allowed: one clock; say --time-column time_min"},
+     "a.csv:1:10: Time may be the time, and so may time_min; allowed: one clock; say CsvOptions::time_column = "
+     "time_min"},
     {"a column that is not there", "time_min,Temp1,Z\n0,20,1\n",
-     "a.csv: no column 'Tmp1' (--temperatures); did you mean Temp1?; allowed: time_min, Temp1, Z",
+     "a.csv: no column 'Tmp1' (CsvOptions::temperatures); did you mean Temp1?; allowed: time_min, Temp1, Z",
      [](CsvOptions& options) { options.temperatures = {"Tmp1"}; }},
     {"a glob that nothing is like", "time_min,T1\n0,20\n",
-     "a.csv: no column of numbers is like 'PT*' (--temperatures); allowed: time_min, T1",
+     "a.csv: no column of numbers is like 'PT*' (CsvOptions::temperatures); allowed: time_min, T1",
      [](CsvOptions& options) { options.temperatures = {"PT*"}; }},
     {"two roles for a column", "time_min,T1,Z\n0,20,1\n",
      "a.csv:1:10: T1 is to be a thermal error and a temperature; allowed: one role for a column",
@@ -171,11 +177,10 @@ const std::vector<Case> cases{
      "a.csv:2:4: a quote inside a field; put the whole field in quotes and double the quote inside"},
     {"time standing still", "time_min,T1\n0,20\n0,21\n",
      "a.csv:3: time_min stands still at 0 s; allowed: time that increases from row to row; split runs with "
-     "--batch-column "
-     "or into files, or leave time out: --time-column none"},
+     "CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"},
     {"time going back", "time_min,T1\n5,20\n0,21\n",
      "a.csv:3: time_min goes back to 0 s from 300 s; allowed: time that increases from row to row; split runs with "
-     "--batch-column or into files, or leave time out: --time-column none"},
+     "CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"},
     {"a row without batch", "time_min,T1,run\n0,20,a\n1,21,\n",
      "a.csv:3: run is empty; allowed: the name of a batch in every row",
      [](CsvOptions& options) { options.batch_column = "run"; }},
@@ -204,16 +209,18 @@ const std::vector<Case> cases{
      "a.csv:2:3: T1 is '1'234.5', with thousands separators; " + number + "write it without them"},
     {"a point among decimal commas", "time_min;T1\n0;20.5\n",
      "a.csv:2:3: T1 is '20.5', a decimal point in a file with decimal comma; allowed: a number such as 20,1; use one "
-     "decimal mark, or say --decimal comma or --decimal point",
+     "decimal mark, or say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point",
      [](CsvOptions& options) { options.decimal_mark = ','; }},
     {"a comma among decimal points", "time_min;T1\n0;20,5\n",
      "a.csv:2:3: T1 is '20,5', a decimal comma in a file with decimal point; allowed: a number such as 20.1; use one "
-     "decimal mark, or say --decimal comma or --decimal point",
+     "decimal mark, or say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point",
      [](CsvOptions& options) { options.decimal_mark = '.'; }},
     {"a date-time where a number should be", "time_min,T1\n0,2024-05-31T08:00:00\n1,3\n",
-     "a.csv:2:3: T1 is '2024-05-31T08:00:00', a date-time; " + number + "name the clock: --time-column NAME"},
+     "a.csv:2:3: T1 is '2024-05-31T08:00:00', a date-time; " + number +
+         "name the clock: CsvOptions::time_column = NAME"},
     {"the wrong separator told", "time_min;T1,Z\n0;20,1\n",
-     "a.csv:2:1: time_min;T1 is '0;20'; " + number + "is the file separated by something else? say --delimiter",
+     "a.csv:2:1: time_min;T1 is '0;20'; " + number +
+         "is the file separated by something else? say CsvOptions::separator",
      [](CsvOptions& options) {
        options.separator = ',';
        options.temperatures = {"time_min;T1"};
@@ -232,18 +239,19 @@ const std::vector<Case> cases{
 
     // Missing values.
     {"one missing value", "time_min,T1\n0,20\n1,\n",
-     "a.csv:3:3 (T1): a value is missing; allowed: a number in every cell; --missing drop leaves such rows out, "
-     "--missing "
-     "hold repeats the last value"},
+     "a.csv:3:3 (T1): a value is missing; allowed: a number in every cell; CsvOptions::missing = drop leaves such rows "
+     "out, "
+     "CsvOptions::missing = hold repeats the last value"},
     {"missing values", "time_min,T1,T2\n0,20,NA\n1,nan,21\n2,20,NULL\n3,20,n/a\n",
-     "a.csv:2:6 (T2): 4 values are missing, this is the first; allowed: a number in every cell; --missing drop leaves "
+     "a.csv:2:6 (T2): 4 values are missing, this is the first; allowed: a number in every cell; CsvOptions::missing = "
+     "drop leaves "
      "such "
-     "rows out, --missing hold repeats the last value"},
+     "rows out, CsvOptions::missing = hold repeats the last value"},
     {"nothing to hold", "time_min,T1\n0,NA\n1,20\n",
-     "a.csv:2:3: T1 is missing, and there is no value before it to hold; allowed: --missing drop",
+     "a.csv:2:3: T1 is missing, and there is no value before it to hold; allowed: CsvOptions::missing = drop",
      [](CsvOptions& options) { options.missing = MissingValues::hold; }},
     {"no time to hold", "time_min,T1\n0,20\n,21\n",
-     "a.csv:3:1: time_min is missing, and time cannot be held; allowed: --missing drop",
+     "a.csv:3:1: time_min is missing, and time cannot be held; allowed: CsvOptions::missing = drop",
      [](CsvOptions& options) { options.missing = MissingValues::hold; }},
     {"nothing left after dropping", "time_min,T1,T2\n0,NA,1\n1,20,NA\n",
      "a.csv: has no row without a missing value; allowed: at least one",
@@ -280,7 +288,7 @@ TEST_CASE("all problems of all files are told in one pass, up to the limit", "[i
   CHECK(text.find("\nc.csv:3:3: T1 is 'z'") != std::string::npos);
   options.max_errors = 2;
   CHECK(lines().first == 2);
-  CHECK(lines().second.find("\nstopped after 2 errors; --max-errors N shows more") != std::string::npos);
+  CHECK(lines().second.find("\nstopped after 2 errors; CsvOptions::max_errors = N shows more") != std::string::npos);
 }
 
 TEST_CASE("batches that do not agree in their channels are refused with the names", "[io]") {
@@ -297,12 +305,13 @@ TEST_CASE("batches that do not agree in their channels are refused with the name
   CHECK(
       message("T1,Z\n20,1\n") ==
       "b.csv: lacks temperature points T2 of a.csv; allowed: the same in every batch: T1, T2; choose common ones with "
-      "--temperatures");
+      "CsvOptions::temperatures");
   CHECK(
       message("T1,T2,T3,Z\n20,1,2,3\n") ==
       "b.csv: has temperature points T3 beyond those of a.csv; allowed: the same in every batch: T1, T2; choose common "
-      "ones with --temperatures");
+      "ones with CsvOptions::temperatures");
   CHECK(message("T1,T2,X\n20,1,2\n") ==
-        "b.csv: lacks errors Z of a.csv; allowed: the same in every batch: Z; choose common ones with --errors");
+        "b.csv: lacks errors Z of a.csv; allowed: the same in every batch: Z; choose common ones with "
+        "CsvOptions::errors");
   CHECK(message("T1,T2,Z\n20,21,1\n", "a.csv") == "a.csv: is given twice; allowed: each file once");
 }

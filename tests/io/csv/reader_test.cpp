@@ -71,7 +71,8 @@ TEST_CASE("a dialect that is not the plain one is told, a plain one is not", "[i
   CHECK(read(spellings[2]).notes({}) == Names{"K01.csv: semicolon-separated, decimal comma"});
   CHECK(read(spellings[8]).notes({}) == Names{"K01.csv: comma-separated, decimal point, unit row",
                                               "K01.csv: converted: T1 from degF, T2 from K, Z from 0.1 um"});
-  CHECK(read("Time,T1\n0,20\n").notes({}) == Names{"K01.csv: Time names no unit: minutes (--time-unit tells another)"});
+  CHECK(read("Time,T1\n0,20\n").notes({}) ==
+        Names{"K01.csv: Time names no unit: minutes (CsvOptions::time_unit tells another)"});
 }
 
 TEST_CASE("a remark about several files is made once", "[io]") {

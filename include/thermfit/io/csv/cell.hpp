@@ -45,10 +45,10 @@ inline Error bad_cell(const std::string& place, const std::string& column, std::
   if (only_marks && marks == 1)
     return explain(dialect.decimal_mark == ',' ? "a decimal point in a file with decimal comma"
                                                : "a decimal comma in a file with decimal point",
-                   "use one decimal mark, or say --decimal comma or --decimal point");
-  if (parse_date_time(text)) return explain("a date-time", "name the clock: --time-column NAME");
+                   "use one decimal mark, or say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point");
+  if (parse_date_time(text)) return explain("a date-time", "name the clock: CsvOptions::time_column = NAME");
   if (text.find_first_of(";\t|") != std::string_view::npos)
-    return explain("", "is the file separated by something else? say --delimiter");
+    return explain("", "is the file separated by something else? say CsvOptions::separator");
   const std::size_t number = bare.find_first_not_of("0123456789.,");
   if (number != std::string_view::npos && number > 0 && find_unit(trim(bare.substr(number))))
     return explain("a number with its unit", "write the unit in brackets behind the name of the column");

@@ -121,7 +121,7 @@ inline char detect_separator(const CsvEvidence& evidence, std::size_t names_give
     if (found.header_fields > 1) headers.push_back(found);
     if (found.consistent_lines > 0) rows.push_back(found);
   }
-  const std::string options = "--delimiter comma, semicolon or tab";
+  const std::string options = "CsvOptions::separator = comma, semicolon or tab";
   const std::size_t first_line = evidence.lines.empty() ? 1 : evidence.lines.front().number;
   const auto ambiguous = [&](const SeparatorEvidence& a, const SeparatorEvidence& b) {
     return Error(place(name, first_line),
@@ -181,13 +181,15 @@ inline char detect_decimal_mark(const CsvEvidence& evidence, char separator, boo
   if (points.count > 0)
     throw Error(commas.place, commas.text + " has a comma, and " + points.text + " (" + points.place + ") has a point",
                 "one decimal mark in a file",
-                "say --decimal comma or --decimal point; write numbers without thousands separators");
+                "say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point; write numbers without "
+                "thousands separators");
   if (separator == ',')
     throw Error(commas.place, commas.text + " in a comma-separated file may be a decimal number or grouped thousands",
-                "", "say --decimal comma if it is a decimal number");
+                "", "say CsvOptions::decimal_mark = comma if it is a decimal number");
   if (separator == '\t' && commas.grouped == commas.count)
-    throw Error(commas.place, commas.text + " may be a decimal number or grouped thousands, as all its like here", "",
-                "say --decimal comma if it is a decimal number; else write thousands without separators");
+    throw Error(
+        commas.place, commas.text + " may be a decimal number or grouped thousands, as all its like here", "",
+        "say CsvOptions::decimal_mark = comma if it is a decimal number; else write thousands without separators");
   return ',';
 }
 

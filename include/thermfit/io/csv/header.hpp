@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -79,6 +80,21 @@ inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::st
   return known;
 }
 
+/// The columns that a line names, the `number`th of `name`. Throws Error when it is no UTF-8 or its quotes do not
+/// match.
+inline std::vector<CsvColumn> columns_in(std::string_view line, std::size_t number, char separator,
+                                         const std::string& name) {
+  if (!is_utf8(line))
+    throw Error(place(name, number), "names that are not UTF-8", "text in UTF-8",
+                "convert: iconv -f WINDOWS-1252 -t UTF-8 FILE");
+  std::vector<CsvField> fields;
+  if (const auto broken = split_line(line, separator, fields))
+    throw Error(place(name, number, broken->column), broken->found, "", broken->remedy);
+  std::vector<CsvColumn> columns;
+  for (const CsvField& field : fields) columns.push_back(column_of(field));
+  return columns;
+}
+
 inline CsvHeader names_given(const CsvOptions& options) {
   CsvHeader header;
   for (const std::string& name : options.columns) header.columns.push_back(column_of({name, 0, false}));
@@ -97,25 +113,18 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
   const auto& first = evidence.lines.front();
   header.line = first.number;
   header.content_lines = 1;
-  if (!is_utf8(first.text))
-    throw Error(place(name, first.number), "names that are not UTF-8", "text in UTF-8",
-                "convert: iconv -f WINDOWS-1252 -t UTF-8 FILE");
-  std::vector<CsvField> fields;
-  if (const auto broken = split_line(first.text, dialect.separator, fields))
-    throw Error(place(name, first.number, broken->column), broken->found, "", broken->remedy);
-  bool all_numbers = true;
-  for (const CsvField& field : fields) {
-    header.columns.push_back(column_of(field));
-    all_numbers = all_numbers && (is_missing(field.text) || parse_field(field.text, dialect.decimal_mark) ||
-                                  parse_date_time(field.text));
-  }
-  if (all_numbers)
+  header.columns = columns_in(first.text, first.number, dialect.separator, name);
+  if (std::all_of(header.columns.begin(), header.columns.end(), [&](const CsvColumn& column) {
+        return is_missing(column.title) || parse_field(column.title, dialect.decimal_mark) ||
+               parse_date_time(column.title);
+      }))
     throw Error(place(name, first.number), "numbers where the names of the columns should be", "a header line",
-                "add one, or name the columns: --columns NAME,NAME,…");
-  header.empty_last_column =
-      fields.size() > 1 && fields.back().text.empty() && rows_end_in_separator(evidence, dialect.separator);
+                "add one, or name the columns: CsvOptions::columns = NAME,NAME,…");
+  header.empty_last_column = header.columns.size() > 1 && header.columns.back().title.empty() &&
+                             rows_end_in_separator(evidence, dialect.separator);
   if (header.empty_last_column) header.columns.pop_back();
 
+  std::vector<CsvField> fields;
   std::vector<std::string> units;
   if (evidence.lines.size() > 1 && !split_line(evidence.lines[1].text, dialect.separator, fields) &&
       fields.size() == header.columns.size() + header.empty_last_column && is_unit_row(fields, units)) {
@@ -140,12 +149,13 @@ inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, c
   CsvHeader header = options.columns.empty() ? names_read(evidence, dialect, name) : names_given(options);
   if (header.columns.size() > options.max_columns)
     throw Error(place(name, header.line), std::to_string(header.columns.size()) + " columns",
-                "at most " + std::to_string(options.max_columns), "is this the right file, and the right --delimiter?");
+                "at most " + std::to_string(options.max_columns),
+                "is this the right file, and the right CsvOptions::separator?");
   Problems problems(options.max_errors);
   std::map<std::string, std::size_t> first_of_name;
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const CsvColumn& column = header.columns[c];
-    const std::string at = header.line == 0 ? "--columns" : place(name, header.line, column.position);
+    const std::string at = header.line == 0 ? "CsvOptions::columns" : place(name, header.line, column.position);
     if (column.name.empty())
       problems.add(Error(at, "column " + std::to_string(c + 1) + " has no name", "a name for each column"));
     const auto [before, fresh] = first_of_name.emplace(column.name, c + 1);

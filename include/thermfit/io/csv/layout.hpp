@@ -98,20 +98,20 @@ class LayoutMaker {
 
   CsvLayout make() {
     if (!options_.batch_column.empty()) {
-      const std::size_t c = find(options_.batch_column, "--batch-column");
+      const std::size_t c = find(options_.batch_column, "CsvOptions::batch_column");
       layout_.slots[c].role = CsvRole::batch;
       layout_.roles.batch = take(c, "the batch column");
     }
     assign_time();
-    // Errors come first, so that `--temperatures '*'` leaves them alone.
+    // Errors come first, so that `temperatures = {"*"}` leaves them alone.
     const auto errors = options_.errors.empty() ? by_default(is_error_name, "a thermal error")
-                                                : choose(wanted_errors(), "--errors", "a thermal error");
+                                                : choose(wanted_errors(), "CsvOptions::errors", "a thermal error");
     const auto temperatures = options_.temperatures.empty()
                                   ? by_default(is_temperature_name, "a temperature")
-                                  : choose(options_.temperatures, "--temperatures", "a temperature");
+                                  : choose(options_.temperatures, "CsvOptions::temperatures", "a temperature");
     add_values(temperatures, layout_.roles.temperatures, Quantity::temperature);
     add_values(errors, layout_.roles.errors, Quantity::length);
-    add_values(options_.inputs ? choose(*options_.inputs, "--inputs", "an input") : remaining_numbers(),
+    add_values(options_.inputs ? choose(*options_.inputs, "CsvOptions::inputs", "an input") : remaining_numbers(),
                layout_.roles.inputs, std::nullopt);
     for (std::size_t c = 0; c < taken_.size(); ++c)
       if (taken_[c].empty()) layout_.roles.ignored.push_back(column(c).name);
@@ -121,7 +121,7 @@ class LayoutMaker {
  private:
   const CsvColumn& column(std::size_t c) const { return header_.columns[c]; }
   std::string place_of(std::size_t c) const {
-    return header_.line == 0 ? "--columns" : place(name_, header_.line, column(c).position);
+    return header_.line == 0 ? "CsvOptions::columns" : place(name_, header_.line, column(c).position);
   }
 
   std::string take(std::size_t c, const std::string& as) {
@@ -238,14 +238,14 @@ class LayoutMaker {
   void assign_time() {
     if (options_.time_column == "none") return;
     std::vector<std::size_t> found;
-    if (!options_.time_column.empty()) found.push_back(find(options_.time_column, "--time-column"));
+    if (!options_.time_column.empty()) found.push_back(find(options_.time_column, "CsvOptions::time_column"));
     for (std::size_t c = 0; c < header_.columns.size() && options_.time_column.empty(); ++c)
       if (taken_[c].empty() && !time_unit(column(c).name).empty()) found.push_back(c);
     for (std::size_t c = 0; c < header_.columns.size() && found.empty() && options_.time_column.empty(); ++c)
       if (taken_[c].empty() && contents_[c].date_time && !contents_[c].numbers) found.push_back(c);
     if (found.size() > 1)
       throw Error(place_of(found[1]), column(found[1]).name + " may be the time, and so may " + column(found[0]).name,
-                  "one clock", "say --time-column " + column(found[0]).name);
+                  "one clock", "say CsvOptions::time_column = " + column(found[0]).name);
     if (found.empty()) return;
     const std::size_t c = found.front();
     layout_.roles.time = take(c, "the time");
@@ -256,7 +256,7 @@ class LayoutMaker {
     std::string unit = column(c).unit.empty() && by_name != "?" ? by_name : column(c).unit;
     if (!options_.time_unit.empty() && !unit.empty() && find_unit(unit) && find_unit(options_.time_unit) &&
         unit != options_.time_unit)
-      throw Error(place_of(c), column(c).title + " says " + unit + ", --time-unit says " + options_.time_unit,
+      throw Error(place_of(c), column(c).title + " says " + unit + ", CsvOptions::time_unit says " + options_.time_unit,
                   "one unit for a column");
     layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
     if (unit.empty()) unit = options_.time_unit.empty() ? "min" : options_.time_unit;

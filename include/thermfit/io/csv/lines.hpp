@@ -25,6 +25,8 @@ inline bool is_content(std::string_view line) {
   return false;
 }
 
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 /// The lines of a file, read in blocks: constant memory, whatever the size of the file. Refuses at once what is no
 /// text: other encodings, workbooks, NUL bytes, lone carriage returns, endless lines.
 class CsvLines {
@@ -34,8 +36,8 @@ class CsvLines {
     while ((end_ < head_bytes || (!holds_two_content_lines() && end_ < 2 * max_line_bytes_)) && fill()) {
     }
     if (!at_end_ && text().find('\n') == std::string_view::npos) refuse_long(end_);
-    if (text().substr(0, 3) == "\xEF\xBB\xBF") {
-      begin_ = 3;
+    if (text().substr(0, byte_order_mark.size()) == byte_order_mark) {
+      begin_ = byte_order_mark.size();
       bom_ = true;
     }
     const std::string_view start = head();

@@ -54,9 +54,10 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
   if (roles.temperatures.empty()) {
     std::vector<std::string> others = roles.inputs;
     others.insert(others.end(), roles.ignored.begin(), roles.ignored.end());
-    problems.add(Error(reader.file().path, "no temperature point", "T1, T2, … or the names given by --temperatures",
-                       others.size() == 1 ? "one column only: is the separator another? --delimiter says which"
-                                          : "columns there are: " + name_list(others)));
+    problems.add(
+        Error(reader.file().path, "no temperature point", "T1, T2, … or the names given by CsvOptions::temperatures",
+              others.size() == 1 ? "one column only: is the separator another? CsvOptions::separator says which"
+                                 : "columns there are: " + name_list(others)));
     return;
   }
   const std::size_t width = roles.temperatures.size() + roles.errors.size() + roles.inputs.size();
@@ -149,8 +150,9 @@ inline CsvReading read_campaign(const std::vector<std::string>& paths, const Csv
   problems.throw_if_any();
   for (Batch& batch : reading.batches) {
     const Batch& first = reading.batches.front();
-    detail::agree(first.temperatures, batch.temperatures, batch, first, "temperature points", "--temperatures");
-    detail::agree(first.errors, batch.errors, batch, first, "errors", "--errors");
+    detail::agree(first.temperatures, batch.temperatures, batch, first, "temperature points",
+                  "CsvOptions::temperatures");
+    detail::agree(first.errors, batch.errors, batch, first, "errors", "CsvOptions::errors");
   }
   detail::make_names_differ(reading.batches);
   return reading;
@@ -165,7 +167,8 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
   };
   for (const CsvFile& file : files) {
     if (!file.dialect.is_plain()) add(file, file.dialect.description());
-    if (file.roles.assumed_minutes) add(file, file.roles.time + " names no unit: minutes (--time-unit tells another)");
+    if (file.roles.assumed_minutes)
+      add(file, file.roles.time + " names no unit: minutes (CsvOptions::time_unit tells another)");
     if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
     if (!file.roles.ignored.empty() && !options.inputs)
       add(file, "left out, no numbers: " + name_list(file.roles.ignored));

@@ -282,7 +282,7 @@ class CsvRowReader {
               Error(here(one.column),
                     name_of(one.field) + " is missing, and " +
                         (slot.role == Role::value ? "there is no value before it to hold" : "time cannot be held"),
-                    "--missing drop"));
+                    "CsvOptions::missing = drop"));
           return false;
         }
         values_[slot.index] = state_->held[slot.index];
@@ -309,12 +309,12 @@ class CsvRowReader {
     const double before = state_->time_s;
     state_->time_s = time_s_;
     if (time_s_ > before || !options_.increasing_time) return remember();
-    problems_.add(Error(here(),
-                        layout_.roles.time + (time_s_ == before ? " stands still at " : " goes back to ") +
-                            exact_text(time_s_) + " s" +
-                            (time_s_ == before ? "" : " from " + exact_text(before) + " s"),
-                        "time that increases from row to row",
-                        "split runs with --batch-column or into files, or leave time out: --time-column none"));
+    problems_.add(Error(
+        here(),
+        layout_.roles.time + (time_s_ == before ? " stands still at " : " goes back to ") + exact_text(time_s_) + " s" +
+            (time_s_ == before ? "" : " from " + exact_text(before) + " s"),
+        "time that increases from row to row",
+        "split runs with CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"));
     return false;
   }
 
@@ -330,11 +330,12 @@ class CsvRowReader {
 
   void finish() {
     if (options_.missing == MissingValues::error && file_.missing > 0)
-      problems_.add(Error(file_.first_missing,
-                          file_.missing == 1 ? "a value is missing"
-                                             : std::to_string(file_.missing) + " values are missing, this is the first",
-                          "a number in every cell",
-                          "--missing drop leaves such rows out, --missing hold repeats the last value"));
+      problems_.add(
+          Error(file_.first_missing,
+                file_.missing == 1 ? "a value is missing"
+                                   : std::to_string(file_.missing) + " values are missing, this is the first",
+                "a number in every cell",
+                "CsvOptions::missing = drop leaves such rows out, CsvOptions::missing = hold repeats the last value"));
     else if (seen_rows_ == 0)
       problems_.add(Error(file_.path, "has no rows", "at least one row of numbers"));
     else if (file_.rows == 0 && problems_.count() == 0)

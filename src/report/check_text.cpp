@@ -1,17 +1,15 @@
-#include "report/check_report.hpp"
+#include "report/check_text.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/table.hpp"
+#include "options/field_flags.hpp"
 #include "thermfit/findings/series_scale.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string rows_text(const Finding& one) {
   const std::string first = std::to_string(one.first_row + 1);
@@ -28,73 +26,12 @@ std::string range_text(const Channels& channels) {
   return low > high ? "-" : fixed_text(low, 1) + " … " + fixed_text(high, 1);
 }
 
-double usual_step_s(const Batch& batch) {
-  std::vector<double> steps;
-  for (Index row = 1; row < batch.time_s.size(); ++row) steps.push_back(batch.time_s(row) - batch.time_s(row - 1));
-  return median(steps);
-}
-
 std::string duration_min(const Batch& batch) {
   return batch.time_s.size() < 2 ? "-" : fixed_text((batch.time_s(batch.rows() - 1) - batch.time_s(0)) / 60, 1);
 }
 
 std::string plural(std::size_t count, const std::string& one, const std::string& many) {
   return count == 0 ? "no " + many : std::to_string(count) + ' ' + (count == 1 ? one : many);
-}
-
-/// JSON has no NaN: what is not a number is null. Zero has no sign.
-Json number(double value) { return std::isfinite(value) ? Json(value + 0.) : Json(nullptr); }
-
-Json channel_json(const std::string& name, const std::string& role, const std::string& unit,
-                  const Eigen::Ref<const Vector>& column) {
-  const Series series(column);
-  const SeriesScale scale = series_scale(series);
-  double sum = 0;
-  for (const double value : series.values) sum += value;
-  const bool any = series.size() > 0;
-  const double none = std::nan("");
-  return {{"name", name},
-          {"role", role},
-          {"unit", unit.empty() ? Json(nullptr) : Json(unit)},
-          {"values", series.size()},
-          {"missing", static_cast<std::size_t>(column.size()) - series.size()},
-          {"lowest", number(any ? scale.lowest : none)},
-          {"mean", number(any ? sum / static_cast<double>(series.size()) : none)},
-          {"highest", number(any ? scale.highest : none)},
-          {"resolution", number(scale.resolution)},
-          {"noise", number(scale.noise)}};
-}
-
-Json batch_json(const CheckedBatch& one) {
-  const Batch& batch = one.batch;
-  Json channels = Json::array(), findings = Json::array();
-  const auto add = [&](const Channels& group, const std::string& role, const std::string& unit) {
-    for (Index c = 0; c < group.count(); ++c)
-      channels.push_back(channel_json(group.names[static_cast<std::size_t>(c)], role, unit, group.values.col(c)));
-  };
-  add(batch.temperatures, "temperature", "degC");
-  add(batch.errors, "error", "um");
-  add(batch.inputs, "input", "");
-  for (const Finding& found : one.findings)
-    findings.push_back({{"rule", rule_name(found.rule)},
-                        {"channel", found.channel},
-                        {"first_row", found.first_row + 1},
-                        {"last_row", found.last_row + 1},
-                        {"figure", number(found.figure)},
-                        {"limit", number(found.limit)},
-                        {"unit", found.unit},
-                        {"note", found.note}});
-  return {{"name", batch.name},
-          {"source", batch.source},
-          {"sha256", batch.digest},
-          {"rows", batch.rows()},
-          {"dropped_rows", batch.dropped_rows},
-          {"held_values", batch.held_values},
-          {"first_time_s", batch.has_time() ? number(batch.time_s(0)) : Json(nullptr)},
-          {"last_time_s", batch.has_time() ? number(batch.time_s(batch.rows() - 1)) : Json(nullptr)},
-          {"usual_step_s", number(usual_step_s(batch))},
-          {"channels", channels},
-          {"findings", findings}};
 }
 
 /// A batch without a clock or thermal errors may well have them, under names that do not say so.
@@ -115,6 +52,12 @@ std::string without_role(const std::vector<CheckedBatch>& checked) {
 
 }  // namespace
 
+double usual_step_s(const Batch& batch) {
+  std::vector<double> steps;
+  for (Index row = 1; row < batch.time_s.size(); ++row) steps.push_back(batch.time_s(row) - batch.time_s(row - 1));
+  return median(steps);
+}
+
 std::string check_text(const std::vector<CheckedBatch>& checked) {
   Table overview({"batch", "rows", "min", "step s", "temperatures degC", "errors um", "findings"});
   Table table({"batch", "channel", "rule", "rows", "figure", "limit", "unit"});
@@ -132,7 +75,7 @@ std::string check_text(const std::vector<CheckedBatch>& checked) {
       table.add({batch.name, one.channel, std::string(rule_name(one.rule)), rows_text(one), general_text(one.figure, 4),
                  general_text(one.limit, 4), one.unit});
       notes += wrap("  " + batch.name + ' ' + one.channel + (one.first_row == one.last_row ? ", row " : ", rows ") +
-                        rows_text(one) + ": " + one.note,
+                        rows_text(one) + ": " + with_flags(one.note),
                     80, 4);
     }
   }
@@ -141,17 +84,6 @@ std::string check_text(const std::vector<CheckedBatch>& checked) {
   const std::string faulty_of = findings > 0 && checked.size() > 1 ? std::to_string(faulty) + " of " : "";
   return text + plural(findings, "finding", "findings") + " in " + faulty_of +
          plural(checked.size(), "batch", "batches") + '\n';
-}
-
-std::string check_json(const std::vector<CheckedBatch>& checked) {
-  Json document = {{"format", "thermfit-check/1"}, {"findings", 0}, {"batches", Json::array()}};
-  std::size_t findings = 0;
-  for (const CheckedBatch& one : checked) {
-    findings += one.findings.size();
-    document["batches"].push_back(batch_json(one));
-  }
-  document["findings"] = findings;
-  return document.dump(2) + '\n';
 }
 
 }  // namespace thermfit::cli

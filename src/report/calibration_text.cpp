@@ -1,8 +1,7 @@
-#include "report/calibration_report.hpp"
+#include "report/calibration_text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "cli/table.hpp"
@@ -11,22 +10,7 @@
 namespace thermfit::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 const Parameter& parameter(const Calibration& calibration, std::size_t j) { return calibration.fit.parameters[j]; }
-
-double coordinate(const Calibration& calibration, std::size_t j) {
-  return calibration.fit.coordinates(static_cast<Index>(j));
-}
-
-double value(const Calibration& calibration, std::size_t j) {
-  return parameter(calibration, j).value(coordinate(calibration, j));
-}
-
-/// Posterior standard deviation in the unit of the parameter.
-double standard_error(const Calibration& calibration, std::size_t j) {
-  return calibration.identified[j].sd * parameter(calibration, j).slope(coordinate(calibration, j));
-}
 
 void print_channels(const Calibration& calibration, const MachineRecord& seen, Console& console) {
   Table table({"channel", "unit", "rms before", "rms after", "noise"});
@@ -43,9 +27,9 @@ void print_parameters(const Calibration& calibration, bool all, Console& console
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (!all) {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::abs(coordinate(calibration, a)) > std::abs(coordinate(calibration, b));
+      return std::abs(calibrated(calibration, a).moved) > std::abs(calibrated(calibration, b).moved);
     });
-    const auto still = [&](std::size_t j) { return std::abs(coordinate(calibration, j)) < 0.5; };
+    const auto still = [&](std::size_t j) { return std::abs(calibrated(calibration, j).moved) < 0.5; };
     order.erase(std::find_if(order.begin(), order.end(), still), order.end());
     if (order.size() > 20) order.resize(20);
   }
@@ -54,11 +38,11 @@ void print_parameters(const Calibration& calibration, bool all, Console& console
   if (all) header.insert(header.begin() + 3, "+-");
   Table table(header);
   for (const std::size_t j : order) {
-    const Parameter& one = parameter(calibration, j);
-    const std::string to = general_text(value(calibration, j), 4);
+    const auto [one, moved, value, standard_error] = calibrated(calibration, j);
+    const std::string to = general_text(value, 4);
     std::vector<std::string> row{one.name, general_text(one.mean, 4), one.unit.empty() ? to : to + ' ' + one.unit,
-                                 fixed_text(coordinate(calibration, j), 1)};
-    if (all) row.insert(row.begin() + 3, general_text(standard_error(calibration, j), 2));
+                                 fixed_text(moved, 1)};
+    if (all) row.insert(row.begin() + 3, general_text(standard_error, 2));
     table.add(row);
   }
   console.print(table.text(2));
@@ -91,6 +75,12 @@ void print_unknown(const Calibration& calibration, Console& console) {
 
 }  // namespace
 
+CalibratedParameter calibrated(const Calibration& calibration, std::size_t j) {
+  const Parameter& parameter = calibration.fit.parameters[j];
+  const double moved = calibration.fit.coordinates(static_cast<Index>(j));
+  return {parameter, moved, parameter.value(moved), calibration.identified[j].sd * parameter.slope(moved)};
+}
+
 std::string identified_in_words(const Calibration& calibration, std::size_t j) {
   const Identified& one = calibration.identified[j];
   std::string words = one.pinned() ? "pinned" : "not pinned by these data";
@@ -116,45 +106,6 @@ void print_calibration(const Calibration& calibration, const MachineRecord& seen
     console.line(std::to_string(calibration.agreeing) + " of " + std::to_string(starts) +
                  " starts ended in the same optimum.");
   if (!calibration.fit.converged) console.line("Not converged: the values above are where it stopped, not an optimum.");
-}
-
-std::string calibration_json(const Calibration& calibration, const MachineRecord& seen) {
-  Json document{{"format", "thermfit-calibration/1"},
-                {"machine", calibration.fit.prior.name},
-                {"batches", seen.names},
-                {"converged", calibration.fit.converged},
-                {"iterations", calibration.fit.iterations},
-                {"starts", calibration.log_posteriors.size()},
-                {"agreeing_starts", calibration.agreeing},
-                {"log_posterior", calibration.fit.log_posterior}};
-  Json& channels = document["channels"] = Json::array();
-  for (std::size_t c = 0; c < seen.channels.size(); ++c)
-    channels.push_back({{"channel", seen.channels[c].name},
-                        {"unit", seen.channels[c].displacement ? "um" : "K"},
-                        {"rms_before", rms_of(calibration.residual_before[c])},
-                        {"rms_after", rms_of(calibration.fit.residual[c])},
-                        {"noise", seen.channels[c].floor}});
-  Json& parameters = document["parameters"] = Json::array();
-  for (std::size_t j = 0; j < calibration.fit.parameters.size(); ++j) {
-    const Parameter& one = parameter(calibration, j);
-    const Identified& known = calibration.identified[j];
-    parameters.push_back(
-        {{"parameter", one.name},
-         {"unit", one.unit},
-         {"from", one.mean},
-         {"to", value(calibration, j)},
-         {"standard_error", standard_error(calibration, j)},
-         {"moved_prior_sds", coordinate(calibration, j)},
-         {"posterior_over_prior_sd", known.sd},
-         {"pinned", known.pinned()},
-         {"trades_with", known.trades_with < 0
-                             ? Json(nullptr)
-                             : Json(parameter(calibration, static_cast<std::size_t>(known.trades_with)).name)},
-         {"correlation", known.trades_with < 0 ? Json(nullptr) : Json(known.correlation)},
-         {"at_bound", known.at_bound},
-         {"in_words", identified_in_words(calibration, j)}});
-  }
-  return document.dump(1) + '\n';
 }
 
 }  // namespace thermfit::cli

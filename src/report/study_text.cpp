@@ -1,9 +1,10 @@
-#include "report/study_report.hpp"
+#include "report/study_text.hpp"
 
 #include <algorithm>
 
 #include "cli/table.hpp"
-#include "report/model_report.hpp"
+#include "options/field_flags.hpp"
+#include "report/model_text.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -186,7 +187,7 @@ class ErrorSection {
     for (const StudiedMethod& method : r_.study.methods)
       if (!method.refusal.empty() && std::find(told.begin(), told.end(), method.refusal) == told.end()) {
         told.push_back(method.refusal);
-        console_.print(wrap("-  " + method_title(method) + ": " + method.refusal, 80, 3));
+        console_.print(wrap("-  " + method_title(method) + ": " + with_flags(method.refusal), 80, 3));
       }
   }
 
@@ -242,7 +243,7 @@ class ErrorSection {
         title += ", " + std::to_string(row.components) + (row.components > 1 ? " components" : " component");
       if (!row.result) {
         table.add({title, "-"});
-        console_.print(wrap("-  " + title + ": " + row.refusal, 80, 3));
+        console_.print(wrap("-  " + title + ": " + with_flags(row.refusal), 80, 3));
         continue;
       }
       const std::size_t worst = row.result->worst(e_, &Residuals::rmse);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What `thermfit check` found, as tables for people and as JSON for programs.
+/// What `thermfit check` found, as tables for people.
 
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ struct CheckedBatch {
 /// An overview of the batches, then the findings, a line each, and a line that counts them.
 std::string check_text(const std::vector<CheckedBatch>& checked);
 
-/// `thermfit-check/1`: per batch its clock, channels (range, mean, resolution, noise) and findings.
-std::string check_json(const std::vector<CheckedBatch>& checked);
+/// The median step of the clock; 0 without one.
+double usual_step_s(const Batch& batch);
 
 }  // namespace thermfit::cli

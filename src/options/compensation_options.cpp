@@ -1,4 +1,4 @@
-#include "cli/compensation_options.hpp"
+#include "options/compensation_options.hpp"
 
 namespace thermfit::cli {
 

@@ -2,12 +2,11 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "thermfit/controller/compensator.hpp"
 #include "thermfit/controller/settings_for.hpp"
-#include "thermfit/io/units.hpp"
+#include "thermfit/io/csv/line_reader.hpp"
 
 namespace thermfit::cli {
 
@@ -17,10 +16,8 @@ class LiveCompensation {
   LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow);
   LiveCompensation(const LiveCompensation&) = delete;
 
-  static bool is_comment(std::string_view line);
-
   /// Finds the model's columns, and in shadow mode measured errors. Throws Error on a missing or repeated name, a unit
-  /// that is no temperature, or a quote that is never closed. Then starts.
+  /// that is no temperature, text that is no UTF-8, or a quote that is never closed. Then starts.
   void read_header(const std::string& line, std::size_t line_number);
 
   /// Takes the cells of the next line; cells that are no number are missing. False when the line has not as many cells
@@ -36,12 +33,8 @@ class LiveCompensation {
 
  private:
   using Device = Compensator<double, dynamic_size, dynamic_size, dynamic_size>;
-  struct Column {
-    std::size_t position;
-    Unit unit;
-  };
   struct Measured {
-    std::optional<Column> column;
+    std::optional<std::size_t> column;
     double value_um = 0, sum_squares = 0, remaining_squares = 0;
     std::size_t rows = 0;
   };
@@ -51,9 +44,8 @@ class LiveCompensation {
   Device::Settings settings_;
   Device device_;
   bool shadow_;
-  char separator_ = ',';
-  std::size_t cells_ = 0;
-  std::vector<Column> columns_;
+  std::optional<CsvLineReader> table_;
+  std::vector<std::size_t> columns_;  ///< of the model's temperatures
   std::vector<double> readings_;
   std::vector<Measured> measured_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-/// A study in tables, or as JSON.
+/// A study in tables.
 
 #include <optional>
 #include <string>
@@ -10,7 +10,6 @@
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/batch/campaign_card.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
-#include "thermfit/io/json/node.hpp"
 #include "thermfit/robustness/study.hpp"
 
 namespace thermfit::cli {
@@ -26,9 +25,6 @@ struct StudyReport {
 };
 
 void print_study(const StudyReport& report, Console& console);
-
-/// The document `thermfit-study/1`; `study --help` explains it.
-Json study_to_json(const StudyReport& report);
 
 /// "PLS on correlation", "MLR on FCGR".
 std::string method_title(const StudiedMethod& method);

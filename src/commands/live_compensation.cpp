@@ -1,11 +1,10 @@
-#include "run/live_compensation.hpp"
+#include "commands/live_compensation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "thermfit/error.hpp"
-#include "thermfit/io/csv/field.hpp"
-#include "thermfit/io/csv/header.hpp"
+#include "thermfit/io/csv/writer.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -23,23 +22,6 @@ const char* fault_name(SensorFault fault) {
   return names[static_cast<int>(fault)];
 }
 
-/// The separator that splits the header into most cells.
-char separator_of(const std::string& line) {
-  char best = ',';
-  std::size_t most = 0;
-  std::vector<detail::CsvField> fields;
-  for (const char candidate : {',', ';', '\t'})
-    if (!detail::split_line(line, candidate, fields) && fields.size() > most) {
-      most = fields.size();
-      best = candidate;
-    }
-  return best;
-}
-
-std::string csv_text(const std::string& name) {
-  return name.find_first_of(",\"") == std::string::npos ? name : '"' + name + '"';
-}
-
 }  // namespace
 
 LiveCompensation::LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow)
@@ -52,56 +34,25 @@ LiveCompensation::LiveCompensation(const TrainedModel& trained, const Compensati
       readings_(temperatures_.size(), missing),
       measured_(errors_.size()) {}
 
-bool LiveCompensation::is_comment(std::string_view line) {
-  return line.empty() || line[0] == '#' || line.find_first_not_of(" \t") == std::string_view::npos;
-}
-
 void LiveCompensation::read_header(const std::string& line, std::size_t line_number) {
-  const std::string place = "standard input:" + std::to_string(line_number);
-  const std::string text = line.rfind("\xEF\xBB\xBF", 0) == 0 ? line.substr(3) : line;
-  separator_ = separator_of(text);
-  std::vector<detail::CsvField> fields;
-  if (const auto error = detail::split_line(text, separator_, fields))
-    throw Error(place + ':' + std::to_string(error->column), error->found, "", error->remedy);
-  cells_ = fields.size();
-  const auto find = [&](const std::string& name, Quantity quantity) -> std::optional<Column> {
-    std::optional<Column> found;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const CsvColumn column = detail::column_of(fields[i]);
-      if (column.name != name && column.title != name) continue;
-      if (found) throw Error(place, "column '" + name + "' twice");
-      const auto unit = column.unit.empty() ? Unit{quantity, 0, 1, 1}
-                                            : find_unit(column.unit).value_or(Unit{Quantity::time, 0, 1, 1});
-      if (unit.quantity != quantity)
-        throw Error(place + ':' + std::to_string(column.position), "unit '" + column.unit + "' of '" + name + "'",
-                    std::string(unit_names(quantity)));
-      found = Column{i, unit};
-    }
-    return found;
-  };
+  table_.emplace(line, line_number, "standard input");
   for (const std::string& name : temperatures_) {
-    const auto column = find(name, Quantity::temperature);
+    const auto column = table_->find(name, Quantity::temperature);
     if (!column)
-      throw Error(place, "no column '" + name + "'", "the model's temperatures by name",
-                  "name the columns as in training");
+      throw Error(detail::place("standard input", line_number), "no column '" + name + "'",
+                  "the model's temperatures by name", "name the columns as in training");
     columns_.push_back(*column);
   }
   if (shadow_)
-    for (std::size_t j = 0; j < errors_.size(); ++j) measured_[j].column = find(errors_[j], Quantity::length);
+    for (std::size_t j = 0; j < errors_.size(); ++j) measured_[j].column = table_->find(errors_[j], Quantity::length);
   device_.start();
 }
 
 bool LiveCompensation::read_readings(const std::string& line) {
-  std::vector<detail::CsvField> fields;
-  if (detail::split_line(line, separator_, fields) || fields.size() != cells_) return false;
-  const auto read = [&](const Column& column) {
-    const std::string_view cell = fields[column.position].text;
-    auto value = detail::parse_field(cell, '.');
-    if (!value && separator_ != ',') value = detail::parse_field(cell, ',');
-    return value ? column.unit.to_canonical(*value) : missing;
-  };
-  for (std::size_t i = 0; i < columns_.size(); ++i) readings_[i] = read(columns_[i]);
-  for (Measured& measured : measured_) measured.value_um = measured.column ? read(*measured.column) : missing;
+  if (!table_->take(line)) return false;
+  for (std::size_t i = 0; i < columns_.size(); ++i) readings_[i] = table_->value(columns_[i], Quantity::temperature);
+  for (Measured& measured : measured_)
+    measured.value_um = measured.column ? table_->value(*measured.column, Quantity::length) : missing;
   return true;
 }
 
@@ -112,12 +63,12 @@ void LiveCompensation::lose_readings() {
 
 std::string LiveCompensation::answer_header() const {
   std::string text = "line";
-  for (const std::string& name : errors_) text += ",offset_" + csv_text(name) + "_um";
+  for (const std::string& name : errors_) text += ',' + csv_field("offset_" + name + "_um");
   text += ",state,status,sensor,fault";
   if (!shadow_) return text;
-  for (const std::string& name : errors_) text += ",shadow_" + csv_text(name) + "_um";
+  for (const std::string& name : errors_) text += ',' + csv_field("shadow_" + name + "_um");
   for (std::size_t j = 0; j < errors_.size(); ++j)
-    if (measured_[j].column) text += ",remaining_" + csv_text(errors_[j]) + "_um";
+    if (measured_[j].column) text += ',' + csv_field("remaining_" + errors_[j] + "_um");
   return text;
 }
 
@@ -127,7 +78,7 @@ std::string LiveCompensation::answer(std::size_t line_number) {
   for (std::size_t j = 0; j < errors_.size(); ++j)
     text += ',' + (shadow_ ? "0" : exact_text(device_.offset_um()[j] + 0.0));
   text += std::string(",") + state_name(status.state()) + ',' + std::to_string(status.word) + ',';
-  if (status.sensor() > 0) text += csv_text(temperatures_[static_cast<std::size_t>(status.sensor() - 1)]);
+  if (status.sensor() > 0) text += csv_field(temperatures_[static_cast<std::size_t>(status.sensor() - 1)]);
   text += std::string(",") + fault_name(status.fault());
   if (!shadow_) return text;
   for (const double offset_um : device_.offset_um()) text += ',' + exact_text(offset_um + 0.0);

@@ -1,8 +1,8 @@
-#include "commands/fit_options.hpp"
+#include "options/fit_options.hpp"
 
 #include <algorithm>
 
-#include "cli/campaign_options.hpp"
+#include "options/campaign_options.hpp"
 
 namespace thermfit::cli {
 

@@ -1,4 +1,4 @@
-#include "report/model_report.hpp"
+#include "report/model_text.hpp"
 
 #include <algorithm>
 #include <cctype>

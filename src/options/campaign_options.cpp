@@ -1,4 +1,4 @@
-#include "cli/campaign_options.hpp"
+#include "options/campaign_options.hpp"
 
 #include <glob.h>
 

@@ -1,0 +1,51 @@
+#include "options/field_flags.hpp"
+
+#include "thermfit/fit/train.hpp"
+#include "thermfit/io/csv/options.hpp"
+
+namespace thermfit::cli {
+namespace {
+
+/// A row of the table; does not compile when the library has no such field.
+#define THERMFIT_FLAG(owner, field, flag) \
+  { (static_cast<void>(sizeof(owner::field)), #owner "::" #field), flag }
+
+bool continues_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+}  // namespace
+
+const std::vector<FieldFlag>& field_flags() {
+  static const std::vector<FieldFlag> table{
+      THERMFIT_FLAG(CsvOptions, separator, "--delimiter"),
+      THERMFIT_FLAG(CsvOptions, decimal_mark, "--decimal"),
+      THERMFIT_FLAG(CsvOptions, columns, "--columns"),
+      THERMFIT_FLAG(CsvOptions, time_column, "--time-column"),
+      THERMFIT_FLAG(CsvOptions, time_unit, "--time-unit"),
+      THERMFIT_FLAG(CsvOptions, temperatures, "--temperatures"),
+      THERMFIT_FLAG(CsvOptions, errors, "--errors"),
+      THERMFIT_FLAG(CsvOptions, inputs, "--inputs"),
+      THERMFIT_FLAG(CsvOptions, batch_column, "--batch-column"),
+      THERMFIT_FLAG(CsvOptions, missing, "--missing"),
+      THERMFIT_FLAG(CsvOptions, max_errors, "--max-errors"),
+      THERMFIT_FLAG(TrainingPlan, row_wise, "thermfit fit --row-wise"),
+  };
+  return table;
+}
+
+#undef THERMFIT_FLAG
+
+std::string with_flags(std::string_view message) {
+  std::string text(message);
+  for (const auto& [field, flag] : field_flags())
+    for (std::size_t at = 0; (at = text.find(field, at)) != std::string::npos; ++at) {
+      const std::size_t end = at + field.size();
+      if (end < text.size() && continues_name(text[end])) continue;
+      const bool has_value = text.compare(end, 3, " = ") == 0;
+      text.replace(at, field.size() + (has_value ? 2 : 0), flag);
+    }
+  return text;
+}
+
+}  // namespace thermfit::cli
