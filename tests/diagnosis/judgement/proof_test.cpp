@@ -10,8 +10,9 @@ namespace {
 /// One temperature in `batches` batches; calibration leaves 1 K of one sign in each, the effect leaves `left_K[b]`.
 struct Case {
   SearchResult found;
-  Judgement judgement;
-  GapResiduals stages;
+  Naming naming;
+  GapResiduals levels;
+  Proof proof = Proof::given;
 
   explicit Case(const std::vector<double>& left_K, std::size_t lone_batch = 99,
                 const std::string& effect_name = "sensor-lag", double displacement_left_um = 0, double odds = 1) {
@@ -40,62 +41,51 @@ struct Case {
     found.machine.heat_sources[0].input = "heater";
     found.folds = folds_of(found.machine, found.seen);
     found.calibrated.held.residual = {before};
-    stages.as_simulated = {before};
-    stages.calibrated = {before};
-    stages.with_effect = {after};
+    levels.as_simulated = {before};
+    levels.calibrated = {before};
+    levels.with_effect = {after};
     if (displacement_left_um > 0) {
       const SeriesByBatch left(left_K.size(), Vector::Constant(20, displacement_left_um));
       found.calibrated.held.residual.push_back(before);
-      stages.as_simulated.push_back(before);
-      stages.calibrated.push_back(before);
-      stages.with_effect.push_back(left);
+      levels.as_simulated.push_back(before);
+      levels.calibrated.push_back(before);
+      levels.with_effect.push_back(left);
     }
     FoundEffect effect;
     effect.effect = effect_name;
     effect.location = "T1";
     effect.confidence = 0.99;
-    judgement.verdict = Verdict::effect;
-    judgement.effects = {effect};
-    judgement.odds = odds;
-    demand_proof(judgement, stages, found, standard_effects(), {}, 1);
+    naming.effects = {effect};
+    naming.odds = odds;
+    proof = proof_of(naming, levels, found, standard_effects(), {}, 1);
   }
 };
 
 }  // namespace
 
-TEST_CASE("an effect that shrinks the gap on every held-out batch keeps its name") {
-  const Case one({0.3, 0.4, 0.2, 0.3});
-  CHECK(one.judgement.verdict == Verdict::effect);
-  CHECK(one.judgement.effects.size() == 1);
+TEST_CASE("an effect that shrinks the gap on every held-out batch is borne out") {
+  CHECK(Case({0.3, 0.4, 0.2, 0.3}).proof == Proof::given);
 }
 
-TEST_CASE("an effect that helps some batches and harms others is not named, and the gap is told without it") {
-  const Case one({0.2, 1.3, 0.9, 1.2});
-  CHECK(one.judgement.verdict == Verdict::unknown);
-  CHECK(one.judgement.effects.empty());
-  CHECK(one.judgement.best == &one.found.calibrated);
-  CHECK(one.stages.with_effect[0][1] == one.stages.calibrated[0][1]);
+TEST_CASE("an effect that helps some batches and harms others is not") {
+  CHECK(Case({0.2, 1.3, 0.9, 1.2}).proof == Proof::lacking);
 }
 
-TEST_CASE("a shrink that is certain but next to nothing names no effect") {
-  const Case one({0.96, 0.97, 0.96, 0.97});
-  CHECK(one.judgement.verdict == Verdict::unknown);
+TEST_CASE("nor is one by a shrink that is certain but next to nothing") {
+  CHECK(Case({0.96, 0.97, 0.96, 0.97}).proof == Proof::lacking);
 }
 
-TEST_CASE("with one or two batches an effect is a suspicion, at even odds at most") {
-  CHECK(Case({0.1, 0.1}).judgement.verdict == Verdict::ambiguous);
-  const Case one({0.1});
-  CHECK(one.judgement.verdict == Verdict::ambiguous);
-  REQUIRE(one.judgement.effects.size() == 1);
-  CHECK(one.judgement.effects[0].confidence <= 0.5);
+TEST_CASE("one or two batches prove nothing") {
+  CHECK(Case({0.1, 0.1}).proof == Proof::suspicion);
+  CHECK(Case({0.1}).proof == Proof::suspicion);
 }
 
-TEST_CASE("an effect on the machine that brings temperatures closer at the cost of the displacement is not named") {
+TEST_CASE("an effect on the machine that brings temperatures closer at the cost of the displacement harms") {
   const std::vector<double> closer{0.3, 0.4, 0.2, 0.3};
-  CHECK(Case(closer, 99, "missing-link", 1.2).judgement.verdict == Verdict::unknown);
-  CHECK(Case(closer, 99, "missing-link", 0.7).judgement.verdict == Verdict::effect);
+  CHECK(Case(closer, 99, "missing-link", 1.2).proof == Proof::harms);
+  CHECK(Case(closer, 99, "missing-link", 0.7).proof == Proof::given);
   // A thermometer has no part in the displacement.
-  CHECK(Case(closer, 99, "sensor-lag", 1.02).judgement.verdict == Verdict::effect);
+  CHECK(Case(closer, 99, "sensor-lag", 1.02).proof == Proof::given);
 }
 
 TEST_CASE(
@@ -111,7 +101,7 @@ TEST_CASE(
 
 TEST_CASE("overwhelming evidence names an effect whose gap calibration nearly closes at a price") {
   const std::vector<double> hardly{0.96, 0.97, 0.96, 0.97};
-  CHECK(Case(hardly, 99, "missing-link", 0, 6).judgement.verdict == Verdict::unknown);
-  CHECK(Case(hardly, 99, "missing-link", 0, 8).judgement.verdict == Verdict::effect);
-  CHECK(Case(hardly, 99, "missing-link", 1.2, 8).judgement.verdict == Verdict::unknown);
+  CHECK(Case(hardly, 99, "missing-link", 0, 6).proof == Proof::lacking);
+  CHECK(Case(hardly, 99, "missing-link", 0, 8).proof == Proof::given);
+  CHECK(Case(hardly, 99, "missing-link", 1.2, 8).proof == Proof::harms);
 }

@@ -12,7 +12,8 @@ NextExperiment plan_for(const ThermalNetwork::AddedEffect& a, const ThermalNetwo
   const ThermalNetwork machine = small_machine();
   const MachineRecord seen = observations_of(machine, small_campaign(machine, 3));
   const MapFit fit = map_fit(seen, machine, library);
-  FittedRival first{a.effect, machine, .6}, second{b.effect, machine, .4};
+  FittedRival first{{a.effect, a.location, a.driver, .6}, machine},
+      second{{b.effect, b.location, b.driver, .4}, machine};
   first.network.effects = {a};
   second.network.effects = {b};
   return next_experiment({first, second}, seen, fit, fit.noise, library);
@@ -29,14 +30,16 @@ TEST_CASE("rivals that differ in their law are separated by a schedule of known 
   CHECK(plan.confusion_before == Approx(.4));
   CHECK(plan.confusion_after < .05);
   CHECK(plan.expected_confidence == Approx(1 - plan.confusion_after));
-  CHECK(plan.separates == std::vector<std::string>{"heat-source", "speed-shift"});
+  REQUIRE(plan.separates.size() == 2);
+  CHECK(plan.separates[0].effect == "heat-source");
+  CHECK(plan.separates[1].location == "displacement");
 }
 
 TEST_CASE("equal machines cannot be separated, and that is said", "[gap]") {
   const ThermalNetwork::AddedEffect same{"heat-source", "head", "constant", {{"power_W", 60}, {"scale", 1}}};
   const NextExperiment plan = plan_for(same, same);
   CHECK(plan.confusion_after == Approx(.4).margin(1e-6));
-  CHECK_FALSE(plan.why.empty());
+  CHECK(plan.remark == NextExperiment::Remark::nothing_separates);
 }
 
 TEST_CASE("the menu drives the inputs of the campaign within their range", "[gap]") {
@@ -44,7 +47,7 @@ TEST_CASE("the menu drives the inputs of the campaign within their range", "[gap
   const MachineRecord seen = observations_of(machine, small_campaign(machine, 3));
   for (const Schedule& schedule : experiment_menu(machine, seen)) {
     CHECK(schedule.excitation.inputs.maxCoeff() <= 6000);
-    CHECK(schedule.hours() > 0);
+    CHECK(schedule.block.machine_hours > 0);
   }
 }
 
@@ -53,8 +56,8 @@ TEST_CASE("a faulty thermometer takes its fault along when it changes places", "
   const MachineRecord seen = observations_of(machine, small_campaign(machine, 3));
   const std::vector<Schedule> swaps = sensor_swaps(machine, seen, {"T2"});
   REQUIRE(swaps.size() == 1);
-  CHECK(swaps[0].swapped == "T2");
-  CHECK(swaps[0].with == "T1");
+  CHECK(swaps[0].block.subject == "T2");
+  CHECK(swaps[0].block.beside == "T1");
   ThermalNetwork faulty = machine;
   faulty.effects = {{"sensor-drift", "T2", "", {{"rate_K_per_h", 0.5}}}};
   const ThermalNetwork after = with_swap(faulty, swaps[0]);
@@ -67,12 +70,12 @@ TEST_CASE("without a network the plan isolates the effect and its rival", "[gap]
   FoundEffect found;
   found.effect = "sensor-drift";
   found.location = "T2";
-  CHECK(experiment_by_kind(found, 6).plan.empty());
+  CHECK(experiment_by_kind(found, standard_effects(), 6).plan.empty());
   found.alternatives = {{"friction-law", "bearing", "spindle_rpm", .3}};
-  const NextExperiment plan = experiment_by_kind(found, 6);
+  const NextExperiment plan = experiment_by_kind(found, standard_effects(), 6);
   REQUIRE(plan.plan.size() == 2);
-  CHECK(plan.plan[0].schedule == "sensor swap");
-  CHECK(plan.plan[1].schedule == "speed stair");
+  CHECK(plan.plan[0].kind == ScheduleKind::sensor_swap);
+  CHECK(plan.plan[1].kind == ScheduleKind::speed_stair);
   CHECK(plan.separates.size() == 2);
   CHECK(std::isnan(plan.expected_confidence));
 }

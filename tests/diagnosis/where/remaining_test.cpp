@@ -32,13 +32,14 @@ TEST_CASE("a remaining gap at the noise is called noise", "[gap]") {
   std::vector<Vector> residuals(4, Vector(121));
   for (Vector& residual : residuals)
     for (double& value : residual) value = .25 * normal(random);
-  const Remaining remaining = remaining_gap(campaign_of(4), residuals, .255, .25);
-  CHECK(remaining.white);
-  CHECK(remaining.looks_like == "noise");
-  CHECK(remaining.unexplained_um == Approx(std::sqrt(.255 * .255 - .0625)));
+  const auto [look, white] = remaining_look(campaign_of(4), residuals, .255, .25);
+  CHECK(white);
+  CHECK(look.kind == RemainingLook::Kind::noise);
+  CHECK(unexplained(.255, .25) == Approx(std::sqrt(.255 * .255 - .0625)));
+  CHECK(unexplained(.2, .25) == 0);
 }
 
-TEST_CASE("an offset per batch, a drift and a followed input are told in words", "[gap]") {
+TEST_CASE("an offset per batch, a drift and a followed input are told", "[gap]") {
   const Campaign campaign = campaign_of(5);
   std::vector<Vector> offset, drift, driven;
   for (std::size_t b = 0; b < 5; ++b) {
@@ -46,8 +47,19 @@ TEST_CASE("an offset per batch, a drift and a followed input are told in words",
     drift.push_back(Vector::LinSpaced(121, -1, 1));
     driven.push_back(campaign[b].inputs.values.col(0) / 1000);
   }
-  CHECK(remaining_gap(campaign, offset, 2.5, .2).looks_like.rfind("an offset per batch (100 %", 0) == 0);
-  CHECK(remaining_gap(campaign, drift, .6, .2).looks_like.find("a slow drift (100 %") != std::string::npos);
-  CHECK(remaining_gap(campaign, driven, 3, .2).looks_like.find("it follows spindle_rpm (correlation 1.00") !=
-        std::string::npos);
+  const auto look = [&](const std::vector<Vector>& residuals, double rms) {
+    return remaining_look(campaign, residuals, rms, .2).first;
+  };
+  CHECK(look(offset, 2.5).kind == RemainingLook::Kind::shaped);
+  CHECK(look(offset, 2.5).offset_share == Approx(1));
+  CHECK(look(drift, .6).trend_share == Approx(1));
+  CHECK(look(drift, .6).offset_share == 0);
+  CHECK(look(driven, 3).follows == "spindle_rpm");
+  CHECK(look(driven, 3).correlation == Approx(1).margin(.005));
+}
+
+TEST_CASE("of a few samples nothing is said", "[gap]") {
+  Campaign campaign = campaign_of(1);
+  campaign[0].time_s.conservativeResize(5);
+  CHECK(remaining_look(campaign, {Vector::Ones(5)}, 1, .1).first.kind == RemainingLook::Kind::too_few);
 }

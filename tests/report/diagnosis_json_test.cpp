@@ -1,6 +1,7 @@
-#include "thermfit/io/json/diagnosis.hpp"
+#include "report/diagnosis_json.hpp"
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "support/catch.hpp"
 
@@ -12,7 +13,11 @@ Diagnosis example() {
   diagnosis.machine = "case-01";
   diagnosis.batches = {"K01"};
   diagnosis.verdict = Verdict::effect;
-  FoundEffect found{"friction-law", "front bearing friction", "spindle_rpm", .97, {}, {}, {}};
+  FoundEffect found;
+  found.effect = "friction-law";
+  found.location = "front bearing friction";
+  found.driver = "spindle_rpm";
+  found.confidence = .97;
   found.parameters = {{"P2", "W", 12.3456789, 1.5}, {"m", "1", 2, -1}};
   found.alternatives = {{"forced-convection", "head_front", "", .02}};
   diagnosis.effects = {found};
@@ -28,10 +33,14 @@ Diagnosis example() {
   diagnosis.where.frequency = {{{300, std::numeric_limits<double>::infinity()}, .4}};
   return diagnosis;
 }
+
+nlohmann::ordered_json document_of(const Diagnosis& diagnosis) {
+  return nlohmann::ordered_json::parse(cli::diagnosis_json(diagnosis));
+}
 }  // namespace
 
-TEST_CASE("a diagnosis prints the keys of thermfit-diagnosis/1 with the meaning the format gives them", "[io]") {
-  const auto json = diagnosis_to_json(example());
+TEST_CASE("a diagnosis prints the keys of thermfit-diagnosis/1 with the meaning the format gives them", "[report]") {
+  const auto json = document_of(example());
   CHECK(json["format"] == "thermfit-diagnosis/1");
   CHECK(json["verdict"] == "effect");
   CHECK(json["effects"][0]["driver"] == "spindle_rpm");
@@ -54,7 +63,19 @@ TEST_CASE("a diagnosis prints the keys of thermfit-diagnosis/1 with the meaning 
   CHECK(json["next_experiment"]["plan"].is_array());
 }
 
-TEST_CASE("each verdict prints its own word", "[io]") {
+TEST_CASE("a gap of temperatures stands under no key in um", "[report]") {
+  Diagnosis diagnosis = example();
+  diagnosis.remaining.unexplained = .5;
+  CHECK(document_of(diagnosis)["remaining"]["unexplained_um"] == .5);
+  diagnosis.gap.output = "";
+  diagnosis.gap.unit = "K";
+  CHECK(document_of(diagnosis)["gap"]["output"] == "temperatures");
+  CHECK_FALSE(document_of(diagnosis)["remaining"].contains("unexplained_um"));
+  CHECK(document_of(diagnosis)["remaining"]["unexplained"] == .5);
+  CHECK(document_of(diagnosis)["remaining"]["unit"] == "K");
+}
+
+TEST_CASE("each verdict prints its own word", "[report]") {
   Diagnosis diagnosis;
   for (const auto& [verdict, word] :
        std::vector<std::pair<Verdict, std::string>>{{Verdict::none, "none"},
@@ -63,6 +84,6 @@ TEST_CASE("each verdict prints its own word", "[io]") {
                                                     {Verdict::ambiguous, "ambiguous"},
                                                     {Verdict::unknown, "unknown"}}) {
     diagnosis.verdict = verdict;
-    CHECK(diagnosis_to_json(diagnosis)["verdict"] == word);
+    CHECK(document_of(diagnosis)["verdict"] == word);
   }
 }

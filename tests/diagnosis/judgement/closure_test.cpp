@@ -1,7 +1,6 @@
-#include "thermfit/diagnosis/judgement/posterior.hpp"
+#include "thermfit/diagnosis/judgement/closure.hpp"
 
 #include "support/catch.hpp"
-#include "thermfit/diagnosis/judgement/judge.hpp"
 
 using namespace thermfit;
 
@@ -60,29 +59,4 @@ TEST_CASE("an account of heat must close what is really open, wherever that is")
 
 TEST_CASE("an account that gains nothing closes nothing") {
   CHECK(closure_of(two_channels(), held(3, 3, 0, 0), held(3, 3, -5, 0)).share == 0);
-}
-
-TEST_CASE("a place off the list must be worth the nodes it could have taken") {
-  Account listed, walked;
-  listed.fit.prior.nodes.resize(16);
-  walked.fit.prior.nodes.resize(16);
-  walked.steps = 1;
-  walked.fit.log_evidence = 0.5 * std::log(16) / evidence_power;
-  CHECK(plausibility(walked) < plausibility(listed));
-  walked.fit.log_evidence = 2 * std::log(16) / evidence_power;
-  CHECK(plausibility(walked) > plausibility(listed));
-  CHECK(probabilities({listed, walked})[1] > 0.5);
-}
-
-TEST_CASE("a machine is miscalibrated when calibration closes the gap, not when lumping leaves one") {
-  SearchResult found;
-  found.seen = two_channels();
-  found.placed.residual = held(3, 1, 0, 0).residual;
-  found.calibrated.held = held(1, 1, 0, 0);
-  CHECK(verdict_of_calibration(found, {}) == Verdict::miscalibration);
-  found.calibrated.held = held(2.9, 1, 0, 0);
-  CHECK(verdict_of_calibration(found, {}) == Verdict::none);
-  found.placed.residual = held(1.2, 1, 0, 0).residual;
-  found.calibrated.held = held(1, 1, 0, 0);
-  CHECK(verdict_of_calibration(found, {}) == Verdict::none);
 }

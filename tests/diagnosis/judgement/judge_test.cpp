@@ -1,0 +1,108 @@
+#include "thermfit/diagnosis/judgement/judge.hpp"
+
+#include <algorithm>
+
+#include "support/catch.hpp"
+#include "thermfit/effects/catalogue.hpp"
+
+using namespace thermfit;
+
+namespace {
+
+/// Two channels, one batch of 100 samples, each expected to be off by 1.
+SearchResult two_channels() {
+  SearchResult found;
+  found.seen.names = {"K01"};
+  found.seen.time_s = {Vector::LinSpaced(100, 0, 9900)};
+  for (const char* name : {"T1", "T2"}) {
+    ObservedChannel channel;
+    channel.name = name;
+    channel.floor = 1;
+    found.seen.channels.push_back(channel);
+  }
+  return found;
+}
+
+ChannelResiduals constant(double first, double second) {
+  return {{Vector::Constant(100, first)}, {Vector::Constant(100, second)}};
+}
+
+/// T1 in four batches: calibration leaves 4 K, a thermometer that lags leaves `left_K[b]`, by `nats` of evidence.
+SearchResult lagging(const std::vector<double>& left_K, double nats) {
+  SearchResult found;
+  ObservedChannel channel;
+  channel.name = "T1";
+  channel.floor = 0.5;
+  SeriesByBatch before, after;
+  for (std::size_t b = 0; b < left_K.size(); ++b) {
+    found.seen.names.push_back("K" + std::to_string(b));
+    found.seen.time_s.push_back(Vector::LinSpaced(20, 0, 1900));
+    found.seen.excitations.emplace_back();
+    found.folds.push_back({b});
+    channel.measured.push_back(Vector::LinSpaced(20, 20, 30));
+    before.push_back(Vector::Constant(20, 4));
+    after.push_back(Vector::Constant(20, left_K[b]));
+  }
+  found.seen.channels = {channel};
+  found.machine.nodes = {{"head", 1000, 1}};
+  found.machine.sensors.resize(1);
+  found.machine.sensors[0].column = "T1";
+  found.as_given = {before};
+  found.calibrated.fit.prior = found.machine;
+  found.calibrated.held.residual = {before};
+  found.calibrated.held.by_channel = Vector::Zero(1);
+  Account one = found.calibrated;
+  one.effects = {{"sensor-lag", "T1", "", {{"lag_s", 60}}}};
+  one.fit.prior.effects = one.effects;
+  one.fit.log_evidence = nats;
+  one.held.residual = {after};
+  one.held.by_channel = Vector::Constant(1, nats);
+  found.single = {one};
+  found.screened.resize(1);
+  return found;
+}
+
+Judgement judged(const SearchResult& found) {
+  const EffectLibrary library = standard_effects();
+  return judge(SearchContext{found.seen, found.machine, library, found.folds, 1}, found, {}, 1);
+}
+
+}  // namespace
+
+TEST_CASE("an effect that shrinks the gap on every held-out batch is named, and the gap is told with it") {
+  const SearchResult found = lagging({0.5, 0.6, 0.4, 0.5}, 30);
+  const Judgement result = judged(found);
+  CHECK(result.verdict == Verdict::effect);
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].location == "T1");
+  CHECK(result.best.list == AccountIndex::List::single);
+  CHECK(result.levels.with_effect[0][1](0) == 0.6);
+}
+
+TEST_CASE("an effect that helps some batches and harms others is not named, and the gap is told without it") {
+  const SearchResult found = lagging({0.2, 6, 0.2, 6}, 30);
+  const Judgement result = judged(found);
+  CHECK(result.verdict == Verdict::unknown);
+  CHECK(result.effects.empty());
+  CHECK(result.best.list == AccountIndex::List::calibrated);
+  CHECK(result.levels.with_effect[0][1] == result.levels.calibrated[0][1]);
+}
+
+TEST_CASE("with two batches an effect is a suspicion, at even odds at most") {
+  const Judgement result = judged(lagging({0.5, 0.5}, 30));
+  CHECK(result.verdict == Verdict::ambiguous);
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].confidence <= 0.5);
+}
+
+TEST_CASE("a machine is miscalibrated when calibration closes the gap, not when lumping leaves one") {
+  SearchResult found = two_channels();
+  found.placed.residual = constant(3, 1);
+  found.calibrated.held.residual = constant(1, 1);
+  CHECK(verdict_of_calibration(found, {}) == Verdict::miscalibration);
+  found.calibrated.held.residual = constant(2.9, 1);
+  CHECK(verdict_of_calibration(found, {}) == Verdict::none);
+  found.placed.residual = constant(1.2, 1);
+  found.calibrated.held.residual = constant(1, 1);
+  CHECK(verdict_of_calibration(found, {}) == Verdict::none);
+}
