@@ -6,6 +6,7 @@
 
 #include "cli/table.hpp"
 #include "thermfit/number.hpp"
+#include "thermfit/statistics/rms.hpp"
 
 namespace thermfit::cli {
 namespace {

@@ -21,8 +21,8 @@ Campaign measured(const ThermalNetwork& truth, double noise_K, double noise_um) 
     const Matrix shown = simulate(truth, {excitation_of(truth, batch)}, library)[0].channels;
     for (Index k = 0; k < batch.rows(); ++k) {
       for (Index s = 0; s < 4; ++s)
-        batch.temperatures.values(k, s) = shown(k, s) + noise_K * 1.7 * detail::spread_number(state);
-      batch.errors.values(k, 0) = shown(k, 5) + noise_um * 1.7 * detail::spread_number(state);
+        batch.temperatures.values(k, s) = shown(k, s) + noise_K * 1.7 * symmetric_uniform(state);
+      batch.errors.values(k, 0) = shown(k, 5) + noise_um * 1.7 * symmetric_uniform(state);
     }
     campaign.push_back(batch);
   }

@@ -107,15 +107,3 @@ TEST_CASE("an exactly zero residual has the least noise allowed and a finite lik
   CHECK(found.white == Approx(0.01));
   CHECK(std::isfinite(log_likelihood(found, residual, clocks)));
 }
-
-TEST_CASE("the high-frequency floor sees the noise and neither a slow signal nor rare jumps") {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal(0, 0.25);
-  Vector series(2000);
-  for (Index k = 0; k < series.size(); ++k) {
-    const double t = static_cast<double>(k);
-    series(k) = normal(random) + 30 * std::sin(t / 300) + (k > 1000 ? 15 : 0);
-  }
-  CHECK(high_frequency_sd({series}) == Approx(0.25).epsilon(0.08));
-  CHECK(high_frequency_sd({}) == 0);
-}

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "thermfit/calibration/map_fit.hpp"
+#include "thermfit/compiled.hpp"
+#include "thermfit/lazy.hpp"
+#include "thermfit/statistics/random.hpp"
 
 namespace thermfit {
 
@@ -19,9 +23,11 @@ struct Identified {
 };
 
 /// Posterior standard deviations and correlations from the information of the data and the unit prior.
-inline std::vector<Identified> identified(const MapFit& fit) {
+/// By parameter. Allocates.
+template <typename Scalar = double>
+std::vector<Identified> identified(const MapFit& fit) {
   const Index n = fit.coordinates.size();
-  const Matrix covariance = fit.covariance();
+  const MatrixX<Scalar> covariance = fit.covariance<Scalar>();
   std::vector<Identified> result(static_cast<std::size_t>(n));
   for (Index j = 0; j < n; ++j) {
     Identified& one = result[static_cast<std::size_t>(j)];
@@ -54,25 +60,14 @@ struct Calibration {
   std::vector<SeriesByBatch> residual_before;
 };
 
-namespace detail {
-
-/// Uniform in -1 … 1 from a counter: the same on every machine (splitmix64, Steele et al. 2014).
-inline double spread_number(std::uint64_t& state) {
-  std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>(z >> 11) * 0x1p-52 - 1;
-}
-
-}  // namespace detail
-
 /// Fits all parameters of `machine` to a campaign, from several starts. Throws Error as observations_of() and
-/// simulate() do; that the data do not know a parameter is part of the result.
-inline Calibration calibrate(const MachineRecord& seen, const ThermalNetwork& machine, const EffectLibrary& library,
-                             const CalibrationOptions& options = {}) {
+/// simulate() do; that the data do not know a parameter is part of the result. Allocates.
+template <typename Scalar = double>
+Calibration calibrate(const MachineRecord& seen, const ThermalNetwork& machine, const EffectLibrary& library,
+                      const CalibrationOptions& options = {}) {
   Calibration best;
   const ThermalNetwork complete = with_complete_effects(machine, library);
-  best.residual_before = residuals_of(seen, simulate(complete, seen.excitations, library));
+  best.residual_before = residuals_of<Scalar>(seen, simulate<Scalar>(complete, seen.excitations, library));
   MapFitOptions how;
   how.most_iterations = options.most_iterations;
   how.tolerance = 0.01;
@@ -80,27 +75,18 @@ inline Calibration calibrate(const MachineRecord& seen, const ThermalNetwork& ma
   for (int start = 0; start < std::max(1, options.starts); ++start) {
     if (start > 0) {
       how.start.resize(best.fit.coordinates.size());
-      for (Index j = 0; j < how.start.size(); ++j) how.start(j) = options.spread * detail::spread_number(state);
+      for (Index j = 0; j < how.start.size(); ++j) how.start(j) = options.spread * symmetric_uniform(state);
     }
-    MapFit fit = map_fit(seen, complete, library, how);
+    MapFit fit = map_fit<Scalar>(seen, complete, library, how);
     best.log_posteriors.push_back(fit.log_posterior);
     if (start == 0 || fit.log_posterior > best.fit.log_posterior) best.fit = std::move(fit);
   }
   for (const double one : best.log_posteriors) best.agreeing += one > best.fit.log_posterior - 1;
-  best.identified = identified(best.fit);
+  best.identified = identified<Scalar>(best.fit);
   return best;
 }
 
-/// rms of a channel's residual over all batches, missing samples left out.
-inline double rms_of(const SeriesByBatch& residual) {
-  double sum = 0, count = 0;
-  for (const Vector& series : residual)
-    for (Index k = 0; k < series.size(); ++k)
-      if (std::isfinite(series(k))) {
-        sum += series(k) * series(k);
-        ++count;
-      }
-  return count > 0 ? std::sqrt(sum / count) : 0;
-}
+THERMFIT_COMPILED_TEMPLATE(Calibration calibrate<double>(const MachineRecord&, const ThermalNetwork&,
+                                                         const EffectLibrary&, const CalibrationOptions&));
 
 }  // namespace thermfit

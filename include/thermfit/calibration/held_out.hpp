@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,10 +16,11 @@ using Folds = std::vector<std::vector<std::size_t>>;
 
 /// Every batch left out once: alone up to `most_folds` batches, else every most_folds-th together, so that each fold
 /// keeps all conditions. A batch that alone drives an input judges nothing and stays with the others. Fewer than two
-/// batches leave nothing to judge by: no folds.
-inline Folds folds_of(const ThermalNetwork& network, const MachineRecord& seen, std::size_t most_folds = 12) {
+/// batches leave nothing to judge by: no folds. Allocates.
+template <typename Scalar = double>
+Folds folds_of(const ThermalNetwork& network, const MachineRecord& seen, std::size_t most_folds = 12) {
   std::vector<std::size_t> judges;
-  const std::vector<LoneInput> lone = lone_inputs(network, seen);
+  const std::vector<LoneInput> lone = lone_inputs<Scalar>(network, seen);
   for (std::size_t b = 0; b < seen.batches(); ++b)
     if (std::none_of(lone.begin(), lone.end(), [&](const LoneInput& one) { return one.batch == b; }))
       judges.push_back(b);
@@ -35,12 +38,14 @@ struct HeldOut {
   Vector by_channel;                 ///< the same by channel
 };
 
-inline HeldOut scored(const MachineRecord& seen, ChannelResiduals residual, const std::vector<ResidualNoise>& start) {
-  HeldOut result;
-  result.noise = noise_of(seen, residual, start);
+/// Such residuals with their noise and their scores; `start` as in noise_of(). Allocates.
+template <typename Scalar = double>
+HeldOut scored(const MachineRecord& seen, ChannelResiduals residual, const std::vector<ResidualNoise>& start) {
+  Lazy<HeldOut, Scalar> result;
+  result.noise = noise_of<Scalar>(seen, residual, start);
   result.by_channel.resize(static_cast<Index>(residual.size()));
   for (std::size_t c = 0; c < residual.size(); ++c)
-    result.by_channel(static_cast<Index>(c)) = log_likelihood(result.noise[c], residual[c], seen.time_s);
+    result.by_channel(static_cast<Index>(c)) = log_likelihood<Scalar>(result.noise[c], residual[c], seen.time_s);
   result.log_score = result.by_channel.sum();
   result.residual = std::move(residual);
   return result;
@@ -48,16 +53,18 @@ inline HeldOut scored(const MachineRecord& seen, ChannelResiduals residual, cons
 
 /// Working coordinates fitted without some batches: a Gauss-Newton step away from the fit to all of them, with the
 /// normal equations of the left-out batches subtracted, damped until the training batches agree with it.
-inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library,
-                                  const std::vector<std::size_t>& left_out,
-                                  const std::vector<std::vector<Whitener>>& whiteners) {
-  NormalEquations kept = fit.total();
+/// n long; `whiteners` by channel and batch. Allocates.
+template <typename Scalar = double>
+VectorX<Scalar> coordinates_without(const Lazy<MachineRecord, Scalar>& seen, const Lazy<MapFit, Scalar>& fit,
+                                    const EffectLibrary& library, const std::vector<std::size_t>& left_out,
+                                    const std::vector<std::vector<Whitener>>& whiteners) {
+  Lazy<NormalEquations, Scalar> kept = fit.total();
   for (const std::size_t b : left_out) kept -= fit.equations.by_batch[b];
   const Index n = fit.coordinates.size();
-  Vector low(n), high(n);
+  VectorX<Scalar> low(n), high(n);
   for (Index j = 0; j < n; ++j) std::tie(low(j), high(j)) = detail::coordinate_range(fit.parameter(j));
-  const Vector precision = fit.precision();
-  Matrix information = kept.information;
+  const VectorX<Scalar> precision = fit.precision();
+  MatrixX<Scalar> information = kept.information;
   information.diagonal() += precision;
 
   std::vector<Excitation> training;
@@ -67,12 +74,12 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
       training.push_back(seen.excitations[b]);
       batches.push_back(b);
     }
-  const auto cost = [&](const Vector& t) {
-    const std::vector<Simulation> simulated = simulate(fit.network_at(t), training, library);
+  const auto cost = [&](const VectorX<Scalar>& t) {
+    const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(fit.network_at(t), training, library);
     double sum = precision.dot(t.cwiseAbs2());
     for (std::size_t i = 0; i < batches.size(); ++i)
       for (std::size_t c = 0; c < seen.channels.size(); ++c) {
-        Vector r = seen.channels[c].measured[batches[i]] - simulated[i].channels.col(seen.channels[c].column);
+        VectorX<Scalar> r = seen.channels[c].measured[batches[i]] - simulated[i].channels.col(seen.channels[c].column);
         whiteners[c][batches[i]].apply(r);
         sum += r.squaredNorm();
       }
@@ -80,10 +87,10 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
   };
   double before = precision.dot(fit.coordinates.cwiseAbs2());
   for (const std::size_t b : batches) before += fit.equations.by_batch[b].squares;
-  const Matrix identity = Matrix::Identity(n, n);
+  const MatrixX<Scalar> identity = MatrixX<Scalar>::Identity(n, n);
   for (double damping = 0; damping<1e6; damping = damping> 0 ? 30 * damping : 0.3) {
-    const Vector step =
-        detail::step_in_box(information + damping * identity, kept.score - precision.cwiseProduct(fit.coordinates),
+    const VectorX<Scalar> step =
+        step_in_box<Scalar>(information + damping * identity, kept.score - precision.cwiseProduct(fit.coordinates),
                             fit.coordinates, low, high);
     const double after = cost(fit.coordinates + step);
     if (std::isfinite(after) && after < before) return fit.coordinates + step;
@@ -92,24 +99,29 @@ inline Vector coordinates_without(const MachineRecord& seen, const MapFit& fit, 
 }
 
 /// Residuals of every batch from a fit that has not seen it; of a batch in no fold, nothing (NaN).
-inline HeldOut held_out(const MachineRecord& seen, const MapFit& fit, const EffectLibrary& library,
-                        const Folds& folds) {
-  if (folds.empty()) return scored(seen, fit.residual, fit.noise);
+/// Throws Error as simulate() does. Allocates.
+template <typename Scalar = double>
+HeldOut held_out(const Lazy<MachineRecord, Scalar>& seen, const Lazy<MapFit, Scalar>& fit, const EffectLibrary& library,
+                 const Folds& folds) {
+  if (folds.empty()) return scored<Scalar>(seen, fit.residual, fit.noise);
   const auto whiteners = whiteners_of(seen, fit.noise);
   ChannelResiduals residual(seen.channels.size());
   for (SeriesByBatch& channel : residual)
-    for (const Vector& time_s : seen.time_s) channel.push_back(Vector::Constant(time_s.size(), std::nan("")));
+    for (const Vector& time_s : seen.time_s) channel.push_back(VectorX<Scalar>::Constant(time_s.size(), std::nan("")));
   for (const std::vector<std::size_t>& left_out : folds) {
-    const Vector t = coordinates_without(seen, fit, library, left_out, whiteners);
+    const VectorX<Scalar> t = coordinates_without<Scalar>(seen, fit, library, left_out, whiteners);
     std::vector<Excitation> unseen;
     for (const std::size_t b : left_out) unseen.push_back(seen.excitations[b]);
-    const std::vector<Simulation> simulated = simulate(fit.network_at(t), unseen, library);
+    const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(fit.network_at(t), unseen, library);
     for (std::size_t i = 0; i < left_out.size(); ++i)
       for (std::size_t c = 0; c < seen.channels.size(); ++c)
         residual[c][left_out[i]] =
             seen.channels[c].measured[left_out[i]] - simulated[i].channels.col(seen.channels[c].column);
   }
-  return scored(seen, std::move(residual), fit.noise);
+  return scored<Scalar>(seen, std::move(residual), fit.noise);
 }
+
+THERMFIT_COMPILED_TEMPLATE(HeldOut held_out<double>(const MachineRecord&, const MapFit&, const EffectLibrary&,
+                                                    const Folds&));
 
 }  // namespace thermfit

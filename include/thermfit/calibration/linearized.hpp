@@ -1,11 +1,12 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "thermfit/calibration/machine_record.hpp"
+#include "thermfit/compiled.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/parameters.hpp"
 #include "thermfit/network/simulate.hpp"
 #include "thermfit/statistics/residual_noise.hpp"
@@ -15,7 +16,10 @@ namespace thermfit {
 /// Measured minus simulated, by channel and batch; NaN where nothing was measured.
 using ChannelResiduals = std::vector<SeriesByBatch>;
 
-inline ChannelResiduals residuals_of(const MachineRecord& seen, const std::vector<Simulation>& simulated) {
+/// The residuals of a campaign, `simulated` by batch. Allocates.
+template <typename Scalar = double>
+ChannelResiduals residuals_of(const Lazy<MachineRecord, Scalar>& seen,
+                              const Lazy<std::vector<Simulation>, Scalar>& simulated) {
   ChannelResiduals result(seen.channels.size());
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
     for (std::size_t b = 0; b < simulated.size(); ++b)
@@ -48,26 +52,28 @@ inline std::vector<std::vector<Whitener>> whiteners_of(const MachineRecord& seen
   return result;
 }
 
-/// Whitens simulations that carry sensitivities. `slopes` is d(value)/dt of each parameter.
-inline Linearized linearized(const MachineRecord& seen, const std::vector<Simulation>& simulated, const Vector& slopes,
-                             const std::vector<std::vector<Whitener>>& whiteners) {
-  Linearized result;
+/// Whitens simulations that carry sensitivities, by batch. `slopes` is d(value)/dt of each parameter, `whiteners` by
+/// channel and batch. Allocates.
+template <typename Scalar = double>
+Linearized linearized(const Lazy<MachineRecord, Scalar>& seen, const Lazy<std::vector<Simulation>, Scalar>& simulated,
+                      const Lazy<VectorX<Scalar>>& slopes, const std::vector<std::vector<Whitener>>& whiteners) {
+  Lazy<Linearized, Scalar> result;
   result.parameters = slopes.size();
   result.channels.resize(seen.channels.size());
   for (std::size_t c = 0; c < seen.channels.size(); ++c) {
-    Linearized::Channel& channel = result.channels[c];
+    Lazy<Linearized::Channel, Scalar>& channel = result.channels[c];
     const Index column = seen.channels[c].column;
-    Vector largest = Vector::Zero(slopes.size());
-    for (const Simulation& one : simulated) {
+    VectorX<Scalar> largest = VectorX<Scalar>::Zero(slopes.size());
+    for (const Lazy<Simulation, Scalar>& one : simulated) {
       const Index n = one.channels.rows();
       largest = largest.cwiseMax(one.jacobian.middleRows(column * n, n).cwiseAbs().colwise().maxCoeff().transpose());
     }
     for (Index j = 0; j < slopes.size(); ++j)
       if (largest(j) > 0) channel.active.push_back(j);
     for (std::size_t b = 0; b < simulated.size(); ++b) {
-      const Simulation& one = simulated[b];
+      const Lazy<Simulation, Scalar>& one = simulated[b];
       const Index n = one.channels.rows();
-      Linearized::Block block;
+      Lazy<Linearized::Block, Scalar> block;
       block.jacobian.resize(n, static_cast<Index>(channel.active.size()));
       for (std::size_t a = 0; a < channel.active.size(); ++a) {
         const Index j = channel.active[a];
@@ -81,6 +87,9 @@ inline Linearized linearized(const MachineRecord& seen, const std::vector<Simula
   }
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(Linearized linearized<double>(const MachineRecord&, const std::vector<Simulation>&,
+                                                         const Vector&, const std::vector<std::vector<Whitener>>&));
 
 /// Gauss-Newton normal equations: information J'J, score J'r, squares r'r.
 struct NormalEquations {
@@ -102,7 +111,15 @@ struct NormalEquations {
     }
     squares += weight * part.squares;
   }
-  NormalEquations& operator-=(const NormalEquations& other) {
+  template <typename Scalar = double>
+  NormalEquations& operator+=(const Lazy<NormalEquations, Scalar>& other) {
+    information += other.information;
+    score += other.score;
+    squares += other.squares;
+    return *this;
+  }
+  template <typename Scalar = double>
+  NormalEquations& operator-=(const Lazy<NormalEquations, Scalar>& other) {
     information -= other.information;
     score -= other.score;
     squares -= other.squares;
@@ -110,8 +127,10 @@ struct NormalEquations {
   }
 };
 
-inline NormalEquations normal_equations(const Linearized::Block& block) {
-  NormalEquations result(block.jacobian.cols());
+/// Of one batch of one channel, in its active parameters. Allocates.
+template <typename Scalar = double>
+NormalEquations normal_equations(const Lazy<Linearized::Block, Scalar>& block) {
+  Lazy<NormalEquations, Scalar> result(block.jacobian.cols());
   result.squares = block.residual.squaredNorm();
   if (block.jacobian.cols() == 0) return result;
   result.information.template selfadjointView<Eigen::Lower>().rankUpdate(block.jacobian.transpose());
@@ -126,21 +145,23 @@ struct SummedEquations {
   std::vector<NormalEquations> by_channel;  ///< in the channel's active parameters
 };
 
-inline SummedEquations summed_equations(const Linearized& model) {
+/// The normal equations of all batches and channels. Allocates.
+template <typename Scalar = double>
+SummedEquations summed_equations(const Linearized& model) {
   SummedEquations result;
   for (const Linearized::Channel& channel : model.channels) {
     NormalEquations sum(static_cast<Index>(channel.active.size()));
     for (std::size_t b = 0; b < channel.batches.size(); ++b) {
-      const NormalEquations part = normal_equations(channel.batches[b]);
+      const NormalEquations part = normal_equations<Scalar>(channel.batches[b]);
       if (result.by_batch.size() <= b) result.by_batch.emplace_back(model.parameters);
       result.by_batch[b].add(part, channel.active);
-      sum.information += part.information;
-      sum.score += part.score;
-      sum.squares += part.squares;
+      sum.operator+=<Scalar>(part);
     }
     result.by_channel.push_back(std::move(sum));
   }
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(SummedEquations summed_equations<double>(const Linearized&));
 
 }  // namespace thermfit

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/calibration/machine_record.hpp"
+#include "thermfit/lazy.hpp"
 
 namespace thermfit {
 
@@ -18,9 +19,10 @@ struct LoneInput {
 
 /// Inputs of the machine's heat sources and effects that are 0 in all batches but one. With fewer than three batches
 /// "all but one" means nothing: none.
-inline std::vector<LoneInput> lone_inputs(const ThermalNetwork& network, const MachineRecord& seen) {
+template <typename Scalar = double>
+std::vector<LoneInput> lone_inputs(const ThermalNetwork& network, const Lazy<MachineRecord, Scalar>& seen) {
   std::vector<LoneInput> result;
-  const std::vector<Excitation>& all = seen.excitations;
+  const Lazy<std::vector<Excitation>, Scalar>& all = seen.excitations;
   const auto drives = [&](const std::string& name) {
     return std::any_of(network.heat_sources.begin(), network.heat_sources.end(),
                        [&](const auto& source) { return source.input == name; }) ||

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "thermfit/calibration/repeats.hpp"
+#include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/excitation.hpp"
 #include "thermfit/statistics/reading_step.hpp"
 #include "thermfit/statistics/residual_noise.hpp"
+#include "thermfit/statistics/white_noise.hpp"
 
 namespace thermfit {
 
@@ -43,11 +46,45 @@ constexpr double lumping_tolerance = 0.01;
 /// below what is expected of any model, for a tenth of the time.
 constexpr double search_state_step = 0.3;
 
+namespace detail {
+
+/// The readings of a channel; none present where the campaign lacks it.
+template <typename Scalar>
+ObservedChannel readings_of(const Lazy<Campaign, Scalar>& campaign, const std::string& name, bool displacement) {
+  ObservedChannel channel;
+  channel.name = name;
+  channel.displacement = displacement;
+  double swing = 0, count = 0;
+  for (const auto& batch : campaign) {
+    const auto& from = displacement ? batch.errors : batch.temperatures;
+    const Index found = from.find(name);
+    VectorX<Scalar> series = VectorX<Scalar>::Constant(batch.rows(), std::nan(""));
+    if (found >= 0) series = from.values.col(found);
+    std::vector<char> present(static_cast<std::size_t>(series.size()));
+    double first = std::nan("");
+    for (Index k = 0; k < series.size(); ++k) {
+      const bool there = std::isfinite(series(k));
+      present[static_cast<std::size_t>(k)] = there;
+      if (!there) continue;
+      if (std::isnan(first)) first = series(k);
+      swing += (series(k) - first) * (series(k) - first);
+      ++count;
+    }
+    channel.measured.push_back(std::move(series));
+    channel.present.push_back(std::move(present));
+  }
+  channel.swing = count > 0 ? std::sqrt(swing / count) : std::nan("");
+  return channel;
+}
+
+}  // namespace detail
+
 /// The channels of `network` that `campaign` measured. The column that gives the ambient temperature is an input, not
-/// an output. Throws Error when there is none, or when a batch cannot drive the network.
-inline MachineRecord observations_of(const ThermalNetwork& network, const Campaign& campaign) {
+/// an output. Throws Error when there is none, or when a batch cannot drive the network. Allocates.
+template <typename Scalar = double>
+MachineRecord observations_of(const ThermalNetwork& network, const Campaign& campaign) {
   MachineRecord result;
-  result.excitations = excitations_of(network, campaign);
+  result.excitations = excitations_of<Scalar>(network, campaign);
   for (Excitation& one : result.excitations) one.state_step = search_state_step;
   double shortest = 1e300, longest = 0;
   for (const Batch& batch : campaign) {
@@ -58,35 +95,13 @@ inline MachineRecord observations_of(const ThermalNetwork& network, const Campai
     shortest = std::min(shortest, span / static_cast<double>(std::max<Index>(1, batch.time_s.size() - 1)));
   }
   const auto take = [&](const std::string& name, bool displacement, Index column) {
-    ObservedChannel channel;
-    channel.name = name;
-    channel.displacement = displacement;
+    ObservedChannel channel = detail::readings_of<Scalar>(campaign, name, displacement);
+    if (std::isnan(channel.swing)) return;
     channel.column = column;
-    double swing = 0, count = 0;
-    for (const Batch& batch : campaign) {
-      const Channels& from = displacement ? batch.errors : batch.temperatures;
-      const Index found = from.find(name);
-      Vector series = Vector::Constant(batch.rows(), std::nan(""));
-      if (found >= 0) series = from.values.col(found);
-      std::vector<char> present(static_cast<std::size_t>(series.size()));
-      double first = std::nan("");
-      for (Index k = 0; k < series.size(); ++k) {
-        const bool there = std::isfinite(series(k));
-        present[static_cast<std::size_t>(k)] = there;
-        if (!there) continue;
-        if (std::isnan(first)) first = series(k);
-        swing += (series(k) - first) * (series(k) - first);
-        ++count;
-      }
-      channel.measured.push_back(std::move(series));
-      channel.present.push_back(std::move(present));
-    }
-    if (count == 0) return;
-    channel.swing = std::sqrt(swing / count);
-    channel.floor = std::max(high_frequency_sd(channel.measured), resolution_sd(channel.measured));
+    channel.floor = std::max(white_noise(channel.measured), resolution_sd(channel.measured));
     channel.bounds.least_white = std::max(0.7 * channel.floor, 1e-3 * channel.swing);
-    channel.bounds.least_slow =
-        std::hypot(lumping_tolerance * channel.swing, channel.floor, repeat_sd(result.excitations, channel.measured));
+    channel.bounds.least_slow = std::hypot(lumping_tolerance * channel.swing, channel.floor,
+                                           repeat_sd<Scalar>(result.excitations, channel.measured));
     channel.bounds.shortest_s = 5 * shortest;
     channel.bounds.longest_s = std::max(longest / 6, 2 * channel.bounds.shortest_s);
     result.channels.push_back(std::move(channel));
@@ -100,5 +115,7 @@ inline MachineRecord observations_of(const ThermalNetwork& network, const Campai
                 "check the column names in `sensors` and `displacement`");
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(MachineRecord observations_of<double>(const ThermalNetwork&, const Campaign&));
 
 }  // namespace thermfit

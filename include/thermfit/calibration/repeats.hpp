@@ -6,14 +6,17 @@
 #include <cmath>
 #include <vector>
 
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/excitation.hpp"
 #include "thermfit/statistics/residual_noise.hpp"
+#include "thermfit/statistics/rms.hpp"
 
 namespace thermfit {
 
 /// Whether two batches repeat each other: as many samples, clocks within a tenth of a step, inputs within 2 % of their
 /// range, rooms that move alike and starts as far off them within `tolerance_K`. The level of the room may differ.
-inline bool repeat_each_other(const Excitation& a, const Excitation& b, double tolerance_K = 0.5) {
+template <typename Scalar = double>
+bool repeat_each_other(const Lazy<Excitation, Scalar>& a, const Lazy<Excitation, Scalar>& b, double tolerance_K = 0.5) {
   if (a.samples() != b.samples() || a.inputs.cols() != b.inputs.cols()) return false;
   const double step_s = a.time_s(a.samples() - 1) / static_cast<double>(a.samples() - 1);
   if ((a.time_s - b.time_s).cwiseAbs().maxCoeff() > 0.1 * step_s) return false;
@@ -23,32 +26,31 @@ inline bool repeat_each_other(const Excitation& a, const Excitation& b, double t
     const double off = (a.inputs.col(i) - b.inputs.col(i)).norm() / std::sqrt(static_cast<double>(a.samples()));
     if (off > 0.02 * range) return false;
   }
-  const auto moves = [](const Excitation& one) { return Vector(one.ambient_degC.array() - one.ambient_degC(0)); };
-  const auto starts = [](const Excitation& one) { return Vector(one.start_degC.array() - one.ambient_degC(0)); };
+  const auto moves = [](const auto& one) { return VectorX<Scalar>(one.ambient_degC.array() - one.ambient_degC(0)); };
+  const auto starts = [](const auto& one) { return VectorX<Scalar>(one.start_degC.array() - one.ambient_degC(0)); };
   return (moves(a) - moves(b)).cwiseAbs().maxCoeff() <= tolerance_K &&
          (starts(a) - starts(b)).cwiseAbs().maxCoeff() <= tolerance_K;
 }
 
 /// Differences of the rises of one channel between batches that repeat each other, over the square root of 2. Empty
 /// where nothing was repeated.
-inline SeriesByBatch repeat_differences(const std::vector<Excitation>& excitations, const SeriesByBatch& measured) {
+template <typename Scalar = double>
+SeriesByBatch repeat_differences(const std::vector<Excitation>& excitations, const SeriesByBatch& measured) {
   SeriesByBatch result;
   for (std::size_t a = 0; a < excitations.size(); ++a)
     for (std::size_t b = a + 1; b < excitations.size(); ++b)
-      if (repeat_each_other(excitations[a], excitations[b])) {
-        const Vector difference = measured[a] - measured[b];
+      if (repeat_each_other<Scalar>(excitations[a], excitations[b])) {
+        VectorX<Scalar> difference = measured[a];
+        difference -= measured[b];
         result.push_back((difference.array() - difference(0)) / std::sqrt(2.0));
       }
   return result;
 }
 
 /// Their rms; 0 where nothing was repeated.
-inline double repeat_sd(const std::vector<Excitation>& excitations, const SeriesByBatch& measured) {
-  double squares = 0, count = 0;
-  for (const Vector& one : repeat_differences(excitations, measured))
-    for (Index k = 0; k < one.size(); ++k)
-      if (!std::isnan(one(k))) squares += one(k) * one(k), ++count;
-  return count > 0 ? std::sqrt(squares / count) : 0;
+template <typename Scalar = double>
+double repeat_sd(const std::vector<Excitation>& excitations, const SeriesByBatch& measured) {
+  return rms_of(repeat_differences<Scalar>(excitations, measured));
 }
 
 }  // namespace thermfit

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/impl/smooth_level.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
@@ -39,12 +41,15 @@ namespace detail {
 
 /// The column `name` of a batch, wherever it is; throws Error where it is absent or has a missing value in its first
 /// `rows` samples.
-inline Vector batch_column(const Batch& batch, const std::string& name, const std::string& purpose, Index rows) {
+template <typename Scalar = double>
+VectorX<Scalar> batch_column(const Lazy<Batch, Scalar>& batch, const std::string& name, const std::string& purpose,
+                             Index rows) {
   const std::string place = batch.source.empty() ? "batch " + batch.name : batch.source;
   for (const Channels* channels : {&batch.temperatures, &batch.inputs, &batch.errors}) {
     const Index j = channels->find(name);
     if (j < 0) continue;
-    const Vector values = channels->values.col(j);
+    const MatrixX<Scalar>& all = channels->values;
+    const VectorX<Scalar> values = all.col(j);
     for (Index i = 0; i < rows; ++i)
       if (!std::isfinite(values(i)))
         throw Error(place, "column '" + name + "' has no value in sample " + std::to_string(i + 1),
@@ -65,13 +70,14 @@ inline const ThermalNetwork::Sensor* ambient_sensor(const ThermalNetwork& networ
   return nullptr;
 }
 
-inline Vector ambient_of(const ThermalNetwork& network, const Batch& batch) {
+template <typename Scalar = double>
+VectorX<Scalar> ambient_of(const ThermalNetwork& network, const Batch& batch) {
   using Rule = ThermalNetwork::Ambient::Rule;
   const ThermalNetwork::Ambient& ambient = network.ambient;
   const Index rows = batch.rows();
-  if (ambient.rule == Rule::constant) return Vector::Constant(rows, ambient.value_degC);
+  if (ambient.rule == Rule::constant) return VectorX<Scalar>::Constant(rows, ambient.value_degC);
   if (ambient.rule == Rule::column)
-    return batch_column(batch, ambient.column, "the machine's ambient temperature", rows);
+    return batch_column<Scalar>(batch, ambient.column, "the machine's ambient temperature", rows);
   std::string column = ambient.column;
   if (ambient.rule == Rule::initial) {
     const ThermalNetwork::Sensor* sensor = ambient_sensor(network, batch);
@@ -82,21 +88,23 @@ inline Vector ambient_of(const ThermalNetwork& network, const Batch& batch) {
                   "", "map a sensor to node \"ambient\", or give a column or a number as \"ambient\"");
     column = sensor->column;
   }
-  return Vector::Constant(rows, batch_column(batch, column, "the machine's first ambient temperature", 1)(0));
+  return VectorX<Scalar>::Constant(
+      rows, batch_column<Scalar>(batch, column, "the machine's first ambient temperature", 1)(0));
 }
 
 }  // namespace detail
 
 /// The excitation of a batch. Throws Error when the batch has no clock, fewer than two samples, lacks a column that the
-/// network needs, or has a missing value in one.
-inline Excitation excitation_of(const ThermalNetwork& network, const Batch& batch) {
+/// network needs, or has a missing value in one. Allocates.
+template <typename Scalar = double>
+Excitation excitation_of(const ThermalNetwork& network, const Lazy<Batch, Scalar>& batch) {
   const std::string place = batch.source.empty() ? "batch " + batch.name : batch.source;
   if (!batch.has_time())
     throw Error(place, "there is no time column", "time_s, time_min, time_h, time or a date-time",
                 "a simulation needs a clock");
   if (batch.rows() < 2) throw Error(place, "one sample only", "at least two", "a simulation needs a duration");
 
-  Excitation result;
+  Lazy<Excitation, Scalar> result;
   result.batch = batch.name;
   result.time_s = batch.time_s.array() - batch.time_s(0);
   for (Index i = 1; i < batch.rows(); ++i)
@@ -107,39 +115,39 @@ inline Excitation excitation_of(const ThermalNetwork& network, const Batch& batc
   for (const ThermalNetwork::HeatSource& source : network.heat_sources) {
     if (source.input == "constant" || result.find_input(source.input) >= 0) continue;
     // A heat source may follow any column; those that are not inputs (a measured temperature, say) are taken along.
-    const Vector values =
-        detail::batch_column(batch, source.input, "the input of heat source '" + source.name + "'", batch.rows());
+    const VectorX<Scalar> values = detail::batch_column<Scalar>(
+        batch, source.input, "the input of heat source '" + source.name + "'", batch.rows());
     result.input_names.push_back(source.input);
     result.inputs.conservativeResize(batch.rows(), result.inputs.cols() + 1);
     result.inputs.rightCols(1) = values;
   }
   for (const ThermalNetwork::HeatSource& source : network.heat_sources)
     if (source.input != "constant")
-      detail::batch_column(batch, source.input, "the input of heat source '" + source.name + "'", batch.rows());
+      detail::batch_column<Scalar>(batch, source.input, "the input of heat source '" + source.name + "'", batch.rows());
 
-  result.ambient_degC = detail::ambient_of(network, batch);
+  result.ambient_degC = detail::ambient_of<Scalar>(network, batch);
   if (const ThermalNetwork::Sensor* sensor = detail::ambient_sensor(network, batch)) {
     result.measured_ambient_degC = batch.temperatures.values.col(batch.temperatures.find(sensor->column));
     if (!result.measured_ambient_degC.allFinite()) result.measured_ambient_degC.resize(0);
-    smooth_level(result.measured_ambient_degC);
+    smooth_level<Scalar>(result.measured_ambient_degC);
   }
 
-  result.first_reading_degC = Vector::Constant(static_cast<Index>(network.sensors.size()), std::nan(""));
+  result.first_reading_degC = VectorX<Scalar>::Constant(static_cast<Index>(network.sensors.size()), std::nan(""));
   for (std::size_t s = 0; s < network.sensors.size(); ++s)
     if (const Index column = batch.temperatures.find(network.sensors[s].column); column >= 0)
       result.first_reading_degC(static_cast<Index>(s)) = batch.temperatures.values(0, column);
 
   const Index nodes = network.node_count();
-  result.start_degC = Vector::Constant(nodes, result.ambient_degC(0));
+  result.start_degC = VectorX<Scalar>::Constant(nodes, result.ambient_degC(0));
   result.start_sensors.resize(network.nodes.size());
   if (network.initial.rule == ThermalNetwork::Initial::Rule::given)
     for (const auto& [node, degC] : network.initial.degC) result.start_degC(node) = degC;
   if (network.initial.rule == ThermalNetwork::Initial::Rule::measured) {
-    Vector sum = Vector::Zero(nodes);
+    VectorX<Scalar> sum = VectorX<Scalar>::Zero(nodes);
     for (std::size_t s = 0; s < network.sensors.size(); ++s) {
       const ThermalNetwork::Sensor& sensor = network.sensors[s];
       if (sensor.node < 0 || batch.temperatures.find(sensor.column) < 0) continue;
-      sum(sensor.node) += detail::batch_column(batch, sensor.column, "the start of a node", 1)(0);
+      sum(sensor.node) += detail::batch_column<Scalar>(batch, sensor.column, "the start of a node", 1)(0);
       result.start_sensors[static_cast<std::size_t>(sensor.node)].push_back(static_cast<Index>(s));
     }
     for (Index node = 0; node < nodes; ++node)
@@ -149,9 +157,13 @@ inline Excitation excitation_of(const ThermalNetwork& network, const Batch& batc
   return result;
 }
 
-inline std::vector<Excitation> excitations_of(const ThermalNetwork& network, const Campaign& campaign) {
+THERMFIT_COMPILED_TEMPLATE(Excitation excitation_of<double>(const ThermalNetwork&, const Batch&));
+
+/// excitation_of() each batch of a campaign, in order.
+template <typename Scalar = double>
+std::vector<Excitation> excitations_of(const ThermalNetwork& network, const Campaign& campaign) {
   std::vector<Excitation> result;
-  for (const Batch& batch : campaign) result.push_back(excitation_of(network, batch));
+  for (const Batch& batch : campaign) result.push_back(excitation_of<Scalar>(network, batch));
   return result;
 }
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "thermfit/network/impl/room_history.hpp"
+#include "thermfit/network/room_history.hpp"
 
 namespace thermfit {
 

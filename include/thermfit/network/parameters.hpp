@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/compiled.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/effect.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
@@ -82,7 +84,8 @@ void visit_value(Network& network, const Parameter& parameter, Take take) {
 
 /// The effects of a network with every parameter of their laws, in the order of the law; those that are absent get the
 /// prior's mean. Throws Error on an unknown effect, place or parameter.
-inline ThermalNetwork with_complete_effects(ThermalNetwork network, const EffectLibrary& effects) {
+template <typename Scalar = double>
+ThermalNetwork with_complete_effects(Lazy<ThermalNetwork, Scalar> network, const EffectLibrary& effects) {
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     ThermalNetwork::AddedEffect& added = network.effects[e];
     const std::vector<EffectParameter> known = effects.at(added.effect).parameters(network, added);
@@ -103,7 +106,8 @@ inline ThermalNetwork with_complete_effects(ThermalNetwork network, const Effect
 
 /// The network with a share, zero at first, for every neighbour of every sensor's node, so that calibration can move
 /// it.
-inline ThermalNetwork with_placements(ThermalNetwork network) {
+template <typename Scalar = double>
+ThermalNetwork with_placements(Lazy<ThermalNetwork, Scalar> network) {
   for (ThermalNetwork::Sensor& sensor : network.sensors)
     for (const ThermalNetwork::Link& link : network.links) {
       if (link.a != sensor.node && link.b != sensor.node) continue;
@@ -118,7 +122,9 @@ inline ThermalNetwork with_placements(ThermalNetwork network) {
 /// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
 /// sensor offsets, placements and responses, the start, then each effect's own (network.effects must be complete).
 /// Numbers that are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
-inline std::vector<Parameter> calibration_parameters(const ThermalNetwork& network, const EffectLibrary& effects) {
+template <typename Scalar = double>
+std::vector<Parameter> calibration_parameters(const Lazy<ThermalNetwork, Scalar>& network,
+                                              const EffectLibrary& effects) {
   using Kind = Parameter::Kind;
   std::vector<Parameter> result;
   const auto positive = [&](Kind kind, std::size_t item, std::string name, const char* unit, double value, double sd) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "thermfit/compiled.hpp"
 #include "thermfit/network/effect.hpp"
 #include "thermfit/network/excitation.hpp"
 #include "thermfit/network/impl/integrator.hpp"
@@ -23,17 +24,19 @@ struct Simulation {
 
 namespace detail {
 
-inline Simulation simulate_batch(const ThermalSystem& system, Regimes& regimes, const Excitation& excitation) {
-  const Drive drive(system, excitation);
-  Integrator integrator(system, regimes, drive);
-  Readings readings(system, drive);
+template <typename Scalar>
+Simulation simulate_batch(const Lazy<ThermalSystem, Scalar>& system, Regimes<Scalar>& regimes,
+                          const Lazy<Excitation, Scalar>& excitation) {
+  const Drive<Scalar> drive(system, excitation);
+  Integrator<Scalar> integrator(system, regimes, drive);
+  Readings<Scalar> readings(system, drive);
   const double delay_s = readings.delay_s();
   const std::vector<GridPoint> grid = time_grid(excitation.time_s, delay_s);
-  Simulation result;
+  Lazy<Simulation, Scalar> result;
   result.nodes_degC.resize(excitation.samples(), static_cast<Index>(system.capacities.size()));
   for (std::size_t i = 0; i < grid.size(); ++i) {
     const GridPoint& point = grid[i];
-    const Regime& regime = integrator.enter(point.sample, point.time_s);
+    const Regime<Scalar>& regime = integrator.enter(point.sample, point.time_s);
     for (const Index k : point.readings) {
       result.nodes_degC.row(k) = integrator.temperatures().transpose();
       readings.take_temperatures(k, regime, integrator);
@@ -54,14 +57,18 @@ inline Simulation simulate_batch(const ThermalSystem& system, Regimes& regimes, 
 /// Simulates each excitation; `parameters` lists the numbers whose sensitivities are wanted (may be empty). The effects
 /// of the network are looked up in `effects`; parameters of theirs that are absent take the prior's mean. Throws Error
 /// on an unknown effect or a missing input.
-inline std::vector<Simulation> simulate(const ThermalNetwork& network, const std::vector<Excitation>& excitations,
-                                        const EffectLibrary& effects, const std::vector<Parameter>& parameters = {}) {
+template <typename Scalar = double>
+std::vector<Simulation> simulate(const ThermalNetwork& network, const std::vector<Excitation>& excitations,
+                                 const EffectLibrary& effects, const std::vector<Parameter>& parameters = {}) {
   const ThermalSystem system = system_of(network, effects, parameters);
-  detail::Regimes regimes(system);
+  detail::Regimes<Scalar> regimes(system);
   std::vector<Simulation> result;
   for (const Excitation& excitation : excitations)
-    result.push_back(detail::simulate_batch(system, regimes, excitation));
+    result.push_back(detail::simulate_batch<Scalar>(system, regimes, excitation));
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(std::vector<Simulation> simulate<double>(
+    const ThermalNetwork&, const std::vector<Excitation>&, const EffectLibrary&, const std::vector<Parameter>&));
 
 }  // namespace thermfit

@@ -7,26 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "thermfit/network/moment.hpp"
+#include "thermfit/network/bound_law.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit {
-
-/// Which column of the sensitivities belongs to a number; -1 where its sensitivity is not wanted.
-using Column = Index;
-
-/// A law together with the values, columns and difference steps of the parameters of the effect it belongs to.
-struct BoundLaw {
-  struct Owner {
-    std::vector<double> values, steps;
-    std::vector<Column> columns;
-  };
-  Law law;
-  std::size_t owner = 0;
-};
-
-/// Node and share of what enters it.
-using Shares = std::vector<std::pair<Index, double>>;
 
 /// A network ready to be integrated: its elements, those of its effects, and which parameter each belongs to.
 ///

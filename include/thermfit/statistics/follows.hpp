@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "thermfit/statistics/even_series.hpp"
+#include "thermfit/compiled.hpp"
+#include "thermfit/types.hpp"
 
 namespace thermfit {
 
@@ -34,8 +35,9 @@ struct BestLag {
   Index lag = 0;
 };
 
-inline BestLag best_lag(const std::vector<Vector>& residual, const std::vector<Vector>& course,
-                        const std::vector<std::size_t>& order) {
+template <typename Scalar>
+BestLag best_lag(const std::vector<VectorX<Scalar>>& residual, const std::vector<VectorX<Scalar>>& course,
+                 const std::vector<std::size_t>& order) {
   const Index count = residual.front().size();
   BestLag best;
   for (Index lag = 0; lag <= count / 4; lag += std::max<Index>(1, count / 64)) {
@@ -59,14 +61,16 @@ inline BestLag best_lag(const std::vector<Vector>& residual, const std::vector<V
 /// Which of `courses` the residual follows. All series have equal length. The null pairs each batch's residual with the
 /// course of another batch, which keeps both autocorrelations and needs no count of independent samples; the maximum
 /// over courses and lags is compared, so many courses are not an advantage. Under three batches nothing is claimed.
-inline Follows follows(const std::vector<Vector>& residual, const std::vector<Course>& courses, unsigned seed = 1) {
+/// `seed` is of the pairings. Allocates.
+template <typename Scalar = double>
+Follows follows(const std::vector<Vector>& residual, const std::vector<Course>& courses, unsigned seed = 1) {
   Follows result;
   const std::size_t batches = residual.size();
   if (batches < 3) return result;
   std::vector<std::size_t> own(batches);
   for (std::size_t b = 0; b < batches; ++b) own[b] = b;
   for (const Course& course : courses) {
-    const detail::BestLag best = detail::best_lag(residual, course.series, own);
+    const detail::BestLag best = detail::best_lag<Scalar>(residual, course.series, own);
     if (std::abs(best.correlation) <= std::abs(result.correlation)) continue;
     result = {course.name, best.correlation, static_cast<double>(best.lag) / static_cast<double>(residual[0].size()),
               1};
@@ -78,7 +82,7 @@ inline Follows follows(const std::vector<Vector>& residual, const std::vector<Co
     for (std::size_t b = batches - 1; b > 0; --b) std::swap(order[b], order[random() % b]);  // Sattolo: nobody stays
     double largest = 0;
     for (const Course& course : courses)
-      largest = std::max(largest, std::abs(detail::best_lag(residual, course.series, order).correlation));
+      largest = std::max(largest, std::abs(detail::best_lag<Scalar>(residual, course.series, order).correlation));
     as_good += largest >= std::abs(result.correlation);
     ++draws;
   }
@@ -86,5 +90,7 @@ inline Follows follows(const std::vector<Vector>& residual, const std::vector<Co
   if (result.p_value > .05 || std::abs(result.correlation) < .3) result.course.clear();
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(Follows follows<double>(const std::vector<Vector>&, const std::vector<Course>&, unsigned));
 
 }  // namespace thermfit

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "thermfit/compiled.hpp"
+#include "thermfit/statistics/rms.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
@@ -78,13 +80,14 @@ class Whitener {
   Index count_ = 0;
 };
 
-/// log density of the series under the noise, all batches together, without the constant of 2 pi.
-inline double log_likelihood(const ResidualNoise& noise, const SeriesByBatch& residual,
-                             const std::vector<Vector>& time_s) {
+/// log density of the series (nats, missing samples left out) under the noise, all batches together, without the
+/// constant of 2 pi. Does not allocate.
+template <typename Scalar = double>
+double log_likelihood(const ResidualNoise& noise, const SeriesByBatch& residual, const std::vector<Vector>& time_s) {
   const double white = noise.white * noise.white, slow = noise.slow * noise.slow;
   double squares = 0, log_determinant = 0;
   for (std::size_t b = 0; b < residual.size(); ++b) {
-    const Vector &r = residual[b], &time = time_s[b];
+    const VectorX<Scalar>&r = residual[b], &time = time_s[b];
     double mean = 0, variance = slow, step = -1, forget = 0, product = 1;
     for (Index k = 0; k < r.size(); ++k) {
       if (!std::isnan(r(k))) {
@@ -111,6 +114,9 @@ inline double log_likelihood(const ResidualNoise& noise, const SeriesByBatch& re
   return -0.5 * (squares + log_determinant);
 }
 
+THERMFIT_COMPILED_TEMPLATE(double log_likelihood<double>(const ResidualNoise&, const SeriesByBatch&,
+                                                         const std::vector<Vector>&));
+
 /// What is known of a channel's noise before its residual is seen.
 struct NoiseBounds {
   double least_white = 0;  ///< resolution and high-frequency noise of the readings
@@ -119,15 +125,11 @@ struct NoiseBounds {
 };
 
 /// Maximum-likelihood noise of a residual within bounds, by a compass search in the logarithms of the three numbers.
-/// `start` shortens the search where a similar residual was estimated before.
-inline ResidualNoise estimate_noise(const SeriesByBatch& residual, const std::vector<Vector>& time_s,
-                                    const NoiseBounds& bounds, const ResidualNoise* start = nullptr) {
-  double squares = 0;
-  Index count = 0;
-  for (const Vector& r : residual)
-    for (Index k = 0; k < r.size(); ++k)
-      if (!std::isnan(r(k))) squares += r(k) * r(k), ++count;
-  const double rms = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
+/// `start` shortens the search where a similar residual was estimated before. `time_s` by batch. Allocates.
+template <typename Scalar = double>
+ResidualNoise estimate_noise(const SeriesByBatch& residual, const std::vector<Vector>& time_s,
+                             const NoiseBounds& bounds, const ResidualNoise* start = nullptr) {
+  const double rms = rms_of(residual);
   const double tiny = std::max({1e-9, 1e-6 * rms, 1e-3 * bounds.least_white});
   using Point = std::array<double, 3>;  // logarithms of white, slow, memory
   const Point low{std::log(std::max(tiny, bounds.least_white)), std::log(std::max(tiny, bounds.least_slow)),
@@ -139,7 +141,7 @@ inline ResidualNoise estimate_noise(const SeriesByBatch& residual, const std::ve
     return p;
   };
   const auto noise_at = [](const Point& p) { return ResidualNoise{std::exp(p[0]), std::exp(p[1]), std::exp(p[2])}; };
-  const auto value = [&](const Point& p) { return log_likelihood(noise_at(p), residual, time_s); };
+  const auto value = [&](const Point& p) { return log_likelihood<Scalar>(noise_at(p), residual, time_s); };
 
   std::vector<Point> starts;
   if (start != nullptr) {
@@ -178,20 +180,7 @@ inline ResidualNoise estimate_noise(const SeriesByBatch& residual, const std::ve
   return noise_at(best);
 }
 
-/// Standard deviation of what changes from sample to sample, from second differences: the noise floor where there are
-/// no repeats. A slow signal cancels in r_{k-1} - 2 r_k + r_{k+1}, whose variance is 6 times that of white noise.
-/// Robust: the median of absolute differences, so that rare jumps of an input do not count as noise.
-inline double high_frequency_sd(const SeriesByBatch& series) {
-  std::vector<double> differences;
-  for (const Vector& r : series)
-    for (Index k = 1; k + 1 < r.size(); ++k) {
-      const double d = r(k - 1) - 2 * r(k) + r(k + 1);
-      if (!std::isnan(d)) differences.push_back(std::abs(d));
-    }
-  if (differences.empty()) return 0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / 0.6745 / std::sqrt(6.0);
-}
+THERMFIT_COMPILED_TEMPLATE(ResidualNoise estimate_noise<double>(const SeriesByBatch&, const std::vector<Vector>&,
+                                                                const NoiseBounds&, const ResidualNoise*));
 
 }  // namespace thermfit

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/compiled.hpp"
+#include "thermfit/constants.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
@@ -19,13 +21,13 @@ struct Whiteness {
 };
 
 /// Tests evenly spaced series (one a batch, means removed here) together: their periodograms, each scaled to mean one,
-/// are pooled over frequency. Constant series are left out.
-inline Whiteness whiteness(const std::vector<Vector>& series) {
-  constexpr double pi = 3.14159265358979323846;
+/// are pooled over frequency. Constant series are left out. Allocates.
+template <typename Scalar = double>
+Whiteness whiteness(const std::vector<Vector>& series) {
   std::vector<std::pair<double, double>> pooled;  // frequency, ordinate
-  for (const Vector& values : series) {
+  for (const VectorX<Scalar>& values : series) {
     const Index count = values.size(), half = (count - 1) / 2;
-    const Vector centred = values.array() - (count ? values.mean() : 0.);
+    const VectorX<Scalar> centred = values.array() - (count ? values.mean() : 0.);
     if (half < 2 || centred.squaredNorm() < 1e-24) continue;
     std::vector<double> ordinates;
     double sum = 0;
@@ -59,5 +61,7 @@ inline Whiteness whiteness(const std::vector<Vector>& series) {
   result.white = result.excess <= result.band;
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(Whiteness whiteness<double>(const std::vector<Vector>&));
 
 }  // namespace thermfit

@@ -14,6 +14,7 @@
 #include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/diagnosis/judgement/shrink.hpp"
 #include "thermfit/statistics/reading_step.hpp"
+#include "thermfit/statistics/white_noise.hpp"
 
 namespace thermfit {
 
@@ -31,7 +32,7 @@ VectorX<Scalar> noise_floor(const MachineRecord& seen, const ChannelResiduals& b
   VectorX<Scalar> result(static_cast<Index>(seen.channels.size()));
   for (std::size_t c = 0; c < seen.channels.size(); ++c) {
     const double repeats = repeat_sd(seen.excitations, seen.channels[c].measured);
-    const double changes = repeats > 0 ? repeats : high_frequency_sd(best[c]);
+    const double changes = repeats > 0 ? repeats : white_noise(best[c]);
     result(static_cast<Index>(c)) = std::max(changes, resolution_sd(seen.channels[c].measured));
   }
   return result;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "thermfit/diagnosis/outputs/calibration_basis.hpp"
+#include "thermfit/statistics/rms.hpp"
+#include "thermfit/statistics/white_noise.hpp"
 
 namespace thermfit {
 
@@ -22,24 +24,6 @@ struct PairedChannel {
   double correlation = 1;   ///< how many samples count as one, (1 + rho) / (1 - rho), at most 6
   double evidence = 0;      ///< of calibration alone, nats
 };
-
-inline double rms_of(const Vector& values) {
-  return values.size() ? std::sqrt(values.squaredNorm() / static_cast<double>(values.size())) : 0;
-}
-
-/// Robust standard deviation of white noise in slowly varying series: median |second difference| / (.6745 sqrt 6).
-inline double white_noise(const PairedCampaign& campaign, const Vector& stack) {
-  std::vector<double> differences;
-  for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
-    const Vector values = campaign.part(stack, b);
-    for (Index k = 1; k + 1 < values.size(); ++k)
-      differences.push_back(std::abs(values(k + 1) - 2 * values(k) + values(k - 1)));
-  }
-  if (differences.empty()) return 0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / (.6745 * std::sqrt(6.));
-}
 
 /// Lag-1 correlation of each batch's series around zero, 0 … .98.
 inline double lag_one_correlation(const PairedCampaign& campaign, const Vector& stack) {
@@ -96,7 +80,9 @@ inline void judge_calibration(const PairedCampaign& campaign, PairedChannel& cha
     const Vector left = held_out_residual(campaign, channel.basis.regressors, channel.gap, channel.basis.prior_sd,
                                           channel.calibrated * std::sqrt(channel.correlation));
     channel.calibrated = rms_of(left) + 1e-6;
-    channel.noise = std::max(white_noise(campaign, left), channel.resolution);
+    std::vector<Vector> parts;
+    for (std::size_t b = 0; b < campaign.batches.size(); ++b) parts.push_back(campaign.part(left, b));
+    channel.noise = std::max(white_noise(parts), channel.resolution);
     const double rho = lag_one_correlation(campaign, left);
     channel.correlation = std::min((1 + rho) / (1 - rho), 6.);
   }

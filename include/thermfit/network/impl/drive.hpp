@@ -1,18 +1,25 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "thermfit/error.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/excitation.hpp"
 #include "thermfit/network/thermal_system.hpp"
 
 namespace thermfit::detail {
 
+template <typename Scalar>
+using RowVectorX = Eigen::Matrix<Scalar, 1, Eigen::Dynamic>;
+
 /// An excitation as one system sees it: the inputs it asks for, ambient after the effects on it, heat of a step.
+template <typename Scalar>
 class Drive {
  public:
-  Drive(const ThermalSystem& system, const Excitation& excitation) : system_(system), excitation_(excitation) {
+  Drive(const Lazy<ThermalSystem, Scalar>& system, const Lazy<Excitation, Scalar>& excitation)
+      : system_(system), excitation_(excitation) {
     const Index samples = excitation.samples();
     inputs_.resize(samples, static_cast<Index>(system.inputs.size()));
     for (std::size_t i = 0; i < system.inputs.size(); ++i) {
@@ -29,7 +36,7 @@ class Drive {
     ambient_ = excitation.ambient_degC;
     if (!system.ambient_laws.empty()) apply_ambient_laws();
     history_ = {excitation.time_s, ambient_};
-    const Vector& measured = excitation.measured_ambient_degC;
+    const VectorX<Scalar>& measured = excitation.measured_ambient_degC;
     measured_history_ = {excitation.time_s, measured.size() > 0 ? measured : ambient_};
   }
 
@@ -37,7 +44,7 @@ class Drive {
   Drive& operator=(const Drive&) = delete;
 
   Index samples() const { return ambient_.size(); }
-  const Excitation& excitation() const { return excitation_; }
+  const Lazy<Excitation, Scalar>& excitation() const { return excitation_; }
 
   double time_s(Index sample) const { return excitation_.time_s(sample); }
 
@@ -45,7 +52,7 @@ class Drive {
   double ambient(Index sample, double time_s) const { return between(ambient_, sample, time_s); }
   /// Derivative of ambient with respect to each parameter at a time; no columns when no effect acts on ambient.
   bool ambient_moves() const { return ambient_tangents_.size() > 0; }
-  Eigen::RowVectorXd ambient_tangent(Index sample, double time_s) const {
+  RowVectorX<Scalar> ambient_tangent(Index sample, double time_s) const {
     const double f = fraction(sample, time_s);
     if (f == 0) return ambient_tangents_.row(sample);
     return (1 - f) * ambient_tangents_.row(sample) + f * ambient_tangents_.row(sample + 1);
@@ -53,7 +60,7 @@ class Drive {
   /// K/s from a sample to the next.
   double ambient_rate(Index sample) const { return rate(ambient_, sample); }
   double measured_ambient_rate(Index sample) const {
-    const Vector& measured = excitation_.measured_ambient_degC;
+    const VectorX<Scalar>& measured = excitation_.measured_ambient_degC;
     return rate(measured.size() > 0 ? measured : ambient_, sample);
   }
 
@@ -63,12 +70,12 @@ class Drive {
     now.time_s = time_s;
     now.ambient_degC = ambient(sample, time_s);
     now.first_ambient_degC = ambient_(0);
-    const Vector& measured = excitation_.measured_ambient_degC;
+    const VectorX<Scalar>& measured = excitation_.measured_ambient_degC;
     now.measured_ambient_degC = measured.size() > 0 ? between(measured, sample, time_s) : now.ambient_degC;
     now.first_measured_ambient_degC = measured.size() > 0 ? measured(0) : now.first_ambient_degC;
     now.ambient = &history_;
     now.measured_ambient = &measured_history_;
-    const Vector& readings = excitation_.first_reading_degC;
+    const VectorX<Scalar>& readings = excitation_.first_reading_degC;
     now.first_reading_degC = readings.size() > 0 ? readings.data() : nullptr;
     now.inputs = inputs_.row(sample).data();
     now.temperature_degC = temperature_degC;
@@ -89,20 +96,20 @@ class Drive {
     if (sample + 1 >= samples()) return 0;
     return (time_s - time_s_(sample)) / (time_s_(sample + 1) - time_s_(sample));
   }
-  double between(const Vector& values, Index sample, double time_s) const {
+  double between(const VectorX<Scalar>& values, Index sample, double time_s) const {
     const double f = fraction(sample, time_s);
     return f == 0 ? values(sample) : values(sample) + f * (values(sample + 1) - values(sample));
   }
 
-  double rate(const Vector& values, Index sample) const {
+  double rate(const VectorX<Scalar>& values, Index sample) const {
     if (sample + 1 >= samples()) return 0;
     return (values(sample + 1) - values(sample)) / (time_s_(sample + 1) - time_s_(sample));
   }
 
   void apply_ambient_laws() {
-    ambient_tangents_ = Matrix::Zero(samples(), system_.columns);
+    ambient_tangents_ = MatrixX<Scalar>::Zero(samples(), system_.columns);
     for (const BoundLaw& law : system_.ambient_laws) {
-      const Vector before = ambient_;
+      const VectorX<Scalar> before = ambient_;
       for (Index k = 0; k < samples(); ++k) {
         Moment now = moment(k, time_s_(k), nullptr);
         now.ambient_degC = before(k);
@@ -118,12 +125,12 @@ class Drive {
     }
   }
 
-  const ThermalSystem& system_;
-  const Excitation& excitation_;
-  const Vector& time_s_ = excitation_.time_s;
-  RowMatrix inputs_;
-  Vector ambient_;
-  Matrix ambient_tangents_;  ///< samples x parameters
+  const Lazy<ThermalSystem, Scalar>& system_;
+  const Lazy<Excitation, Scalar>& excitation_;
+  const VectorX<Scalar>& time_s_ = excitation_.time_s;
+  RowMatrixX<Scalar> inputs_;
+  VectorX<Scalar> ambient_;
+  MatrixX<Scalar> ambient_tangents_;  ///< samples x parameters
   RoomHistory history_, measured_history_;
 };
 

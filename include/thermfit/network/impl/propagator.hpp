@@ -11,33 +11,35 @@
 namespace thermfit::detail {
 
 /// Weights of one step of length h for C dx/dt = -K x + F(t), F linear over the step, in modal coordinates.
+template <typename Scalar>
 struct StepWeights {
-  Vector decay, held, ramp;                 ///< exp(-rate h), h phi_1, h phi_2
-  Matrix from_state, from_held, from_ramp;  ///< divided differences for sensitivities; empty until asked for
+  VectorX<Scalar> decay, held, ramp;                 ///< exp(-rate h), h phi_1, h phi_2
+  MatrixX<Scalar> from_state, from_held, from_ramp;  ///< divided differences for sensitivities; empty until asked for
 };
 
 /// Eigenbasis of a network while its conductances stay the same.
 ///
 /// K = K' and C diagonal, so C^-1/2 K C^-1/2 = V diag(rates) V' and with `modes` = V' C^-1/2:
 /// modal state xi = modes C x, temperatures x = modes' xi, modal force = modes F (F in W).
+template <typename Scalar>
 class Propagator {
  public:
-  Propagator(const Vector& capacities, const Matrix& conductances) {
-    const Vector root = capacities.cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(root.asDiagonal() * conductances * root.asDiagonal());
+  Propagator(const VectorX<Scalar>& capacities, const MatrixX<Scalar>& conductances) {
+    const VectorX<Scalar> root = capacities.cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixX<Scalar>> solver(root.asDiagonal() * conductances * root.asDiagonal());
     rates_ = solver.eigenvalues();
     modes_ = solver.eigenvectors().transpose() * root.asDiagonal();
   }
 
-  const Vector& rates() const { return rates_; }
-  const Matrix& modes() const { return modes_; }
+  const VectorX<Scalar>& rates() const { return rates_; }
+  const MatrixX<Scalar>& modes() const { return modes_; }
 
   /// Weights for a step of `h_s`, kept for the next call. Steps that differ by less than 1e-9 of their length share
   /// weights, so that rounding in a clock does not multiply them.
-  const StepWeights& step(double h_s, bool with_differences) {
+  const StepWeights<Scalar>& step(double h_s, bool with_differences) {
     auto it = steps_.lower_bound(h_s * (1 - 1e-9));
     if (it == steps_.end() || it->first > h_s * (1 + 1e-9)) {
-      StepWeights weights;
+      StepWeights<Scalar> weights;
       const Index n = rates_.size();
       weights.decay.resize(n);
       weights.held.resize(n);
@@ -55,7 +57,7 @@ class Propagator {
   }
 
  private:
-  void add_differences(double h, StepWeights& weights) const {
+  void add_differences(double h, StepWeights<Scalar>& weights) const {
     const Index n = rates_.size();
     weights.from_state.resize(n, n);
     weights.from_held.resize(n, n);
@@ -72,9 +74,9 @@ class Propagator {
       }
   }
 
-  Vector rates_;
-  Matrix modes_;
-  std::map<double, StepWeights> steps_;
+  VectorX<Scalar> rates_;
+  MatrixX<Scalar> modes_;
+  std::map<double, StepWeights<Scalar>> steps_;
 };
 
 }  // namespace thermfit::detail

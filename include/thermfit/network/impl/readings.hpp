@@ -9,16 +9,17 @@
 namespace thermfit::detail {
 
 /// What sensors and displacement probes show of the state, and the tangents of it.
+template <typename Scalar>
 class Readings {
  public:
-  Readings(const ThermalSystem& system, const Drive& drive)
+  Readings(const Lazy<ThermalSystem, Scalar>& system, const Drive<Scalar>& drive)
       : system_(system), drive_(drive), sensors_(static_cast<Index>(system.sensors.size())), samples_(drive.samples()) {
     const Index channels = sensors_ + static_cast<Index>(system.displacements.size());
     values_.resize(samples_, channels);
     tangents_.setZero(samples_ * channels, system.columns);
     for (const ThermalSystem::Sensor& sensor : system.sensors)
       any_response_ = any_response_ || sensor.response_s != 0 || sensor.response_column >= 0;
-    rates_ = Vector::Zero(static_cast<Index>(system.capacities.size()));
+    rates_ = VectorX<Scalar>::Zero(static_cast<Index>(system.capacities.size()));
   }
 
   /// By how much the displacements are logged late.
@@ -29,11 +30,11 @@ class Readings {
   }
 
   /// The rates that late readings show at `end_s`: those just before, under the inputs held since `sample`.
-  void take_rates(Index sample, double end_s, Integrator& now) {
+  void take_rates(Index sample, double end_s, Integrator<Scalar>& now) {
     if (any_response_) rates_ = now.rates(sample, end_s);
   }
 
-  void take_temperatures(Index sample, const Regime& regime, const Integrator& now) {
+  void take_temperatures(Index sample, const Regime<Scalar>& regime, const Integrator<Scalar>& now) {
     const double time_s = drive_.time_s(sample);
     if (!system_.state_columns.empty())
       block_.noalias() = regime.outputs.leftCols(sensors_).transpose() * now.modal_tangents();
@@ -61,8 +62,8 @@ class Readings {
     }
   }
 
-  void take_displacements(Index sample, const GridPoint& point, const Regime& regime, Integrator& now) {
-    const Vector& degC = now.temperatures();
+  void take_displacements(Index sample, const GridPoint& point, const Regime<Scalar>& regime, Integrator<Scalar>& now) {
+    const VectorX<Scalar>& degC = now.temperatures();
     const Index outputs = static_cast<Index>(system_.displacements.size());
     if (!system_.state_columns.empty())
       block_.noalias() = regime.outputs.rightCols(outputs).transpose() * now.modal_tangents();
@@ -94,22 +95,22 @@ class Readings {
       auto series = values_.col(sensors_ + d);
       auto block = tangents_.middleRows((sensors_ + d) * samples_, samples_);
       for (const auto& one : output.operators) {
-        Matrix tangents = block;
+        MatrixX<Scalar> tangents = block;
         const BoundLaw::Owner& owner = system_.owners[one.owner];
         one.law(series, tangents, owner.values.data(), owner.columns.data());
         block = tangents;
       }
       if (!output.zero_at_first_sample) continue;
       series.array() -= double(series(0));
-      const Eigen::RowVectorXd first = block.row(0);
+      const RowVectorX<Scalar> first = block.row(0);
       block.rowwise() -= first;
     }
     for (Index s = 0; s < sensors_; ++s)
       for (const BoundLaw& law : system_.sensors[static_cast<std::size_t>(s)].laws) apply_reading(s, law);
   }
 
-  Matrix& values() { return values_; }
-  RowMatrix& tangents() { return tangents_; }
+  MatrixX<Scalar>& values() { return values_; }
+  RowMatrixX<Scalar>& tangents() { return tangents_; }
 
  private:
   /// Adds a row of tangents of the state to a row of all parameters.
@@ -120,9 +121,9 @@ class Readings {
   }
 
   template <class Row>
-  void add_term_tangent(const ThermalSystem::Displacement::Term& term, const GridPoint& point, const Regime& regime,
-                        const Integrator& now, Row& row) {
-    Vector degC = now.temperatures();
+  void add_term_tangent(const ThermalSystem::Displacement::Term& term, const GridPoint& point,
+                        const Regime<Scalar>& regime, const Integrator<Scalar>& now, Row& row) {
+    VectorX<Scalar> degC = now.temperatures();
     const Moment moment = drive_.moment(point.sample, point.time_s, degC.data());
     for (const Index node : term.depends_on) {
       const double kept = degC(node), step = 1e-3;
@@ -132,7 +133,7 @@ class Readings {
       const double slope = (above - system_.value(term.law, moment)) / (2 * step);
       degC(node) = kept;
       if (slope != 0) {
-        const Eigen::RowVectorXd moved = regime.propagator.modes().col(node).transpose() * now.modal_tangents();
+        const RowVectorX<Scalar> moved = regime.propagator.modes().col(node).transpose() * now.modal_tangents();
         scatter(slope * moved, 0, row);
       }
     }
@@ -153,13 +154,13 @@ class Readings {
   }
 
   /// dz/dt along the trajectory.
-  double displacement_rate(const ThermalSystem::Displacement& output, const GridPoint& point, Integrator& now) {
-    const Vector rates = now.rates(point.sample, point.time_s);
+  double displacement_rate(const ThermalSystem::Displacement& output, const GridPoint& point, Integrator<Scalar>& now) {
+    const VectorX<Scalar> rates = now.rates(point.sample, point.time_s);
     double speed = 0;
     for (const auto& [node, um_per_K] : output.um_per_K) speed += um_per_K * rates(node);
     if (output.terms.empty()) return speed;
     const double step_s = 0.01;
-    const Vector later = now.temperatures() + step_s * rates, sooner = now.temperatures() - step_s * rates;
+    const VectorX<Scalar> later = now.temperatures() + step_s * rates, sooner = now.temperatures() - step_s * rates;
     Moment after = drive_.moment(point.sample, point.time_s, later.data()), before = after;
     before.temperature_degC = sooner.data();
     for (auto [moment, shift_s] : {std::pair(&after, step_s), std::pair(&before, -step_s)}) {
@@ -188,14 +189,14 @@ class Readings {
     }
   }
 
-  const ThermalSystem& system_;
-  const Drive& drive_;
+  const Lazy<ThermalSystem, Scalar>& system_;
+  const Drive<Scalar>& drive_;
   const Index sensors_, samples_;
-  Matrix values_;       ///< samples x channels
-  RowMatrix tangents_;  ///< (channel * samples + sample) x parameters
-  Matrix block_;
+  MatrixX<Scalar> values_;       ///< samples x channels
+  RowMatrixX<Scalar> tangents_;  ///< (channel * samples + sample) x parameters
+  MatrixX<Scalar> block_;
   bool any_response_ = false;
-  Vector rates_;  ///< dtheta/dt of every node before the present sample; at rest before the first
+  VectorX<Scalar> rates_;  ///< dtheta/dt of every node before the present sample; at rest before the first
 };
 
 }  // namespace thermfit::detail

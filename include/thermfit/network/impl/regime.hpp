@@ -3,16 +3,18 @@
 #include <map>
 #include <vector>
 
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/impl/propagator.hpp"
 #include "thermfit/network/thermal_system.hpp"
 
 namespace thermfit::detail {
 
 /// A stretch during which every conductance keeps its value: the eigenbasis, and how parameters move the elements.
+template <typename Scalar>
 struct Regime {
-  Propagator propagator;
-  Vector ambient_drive;  ///< modal force per degC of ambient
-  Matrix links;          ///< modal difference vector of each conductance between two nodes that has a wanted parameter
+  Propagator<Scalar> propagator;
+  VectorX<Scalar> ambient_drive;  ///< modal force per degC of ambient
+  MatrixX<Scalar> links;  ///< modal difference vector of each conductance between two nodes that has a wanted parameter
   struct Slope {
     Index link;  ///< column of `links`; -1: an element of node `a` alone
     Index a;
@@ -21,13 +23,14 @@ struct Regime {
     double slope;  ///< dW_per_K / dparameter
   };
   std::vector<Slope> slopes;
-  Matrix outputs;  ///< nodes x channels: modal weights of every reading and displacement
+  MatrixX<Scalar> outputs;  ///< nodes x channels: modal weights of every reading and displacement
 };
 
 /// The regimes of one system, made when they are first met.
+template <typename Scalar>
 class Regimes {
  public:
-  explicit Regimes(const ThermalSystem& system) : system_(system) {
+  explicit Regimes(const Lazy<ThermalSystem, Scalar>& system) : system_(system) {
     Moment nowhere;
     capacities_.resize(static_cast<Index>(system.capacities.size()));
     for (std::size_t i = 0; i < system.capacities.size(); ++i) {
@@ -38,10 +41,10 @@ class Regimes {
       if (system.conductances[e].held()) held_.push_back(e);
   }
 
-  const Vector& capacities() const { return capacities_; }
+  const VectorX<Scalar>& capacities() const { return capacities_; }
 
   /// The regime at a moment of held inputs.
-  Regime& at(const Moment& now) {
+  Regime<Scalar>& at(const Moment& now) {
     std::vector<double> key;
     for (const std::size_t e : held_) {
       const ThermalSystem::Conductance& one = system_.conductances[e];
@@ -56,12 +59,12 @@ class Regimes {
   }
 
  private:
-  Regime make(const std::vector<double>& key, const Moment& now) const {
+  Regime<Scalar> make(const std::vector<double>& key, const Moment& now) const {
     const Index n = capacities_.size();
-    Matrix conductances = Matrix::Zero(n, n);
-    Vector to_ambient = Vector::Zero(n);
+    MatrixX<Scalar> conductances = MatrixX<Scalar>::Zero(n, n);
+    VectorX<Scalar> to_ambient = VectorX<Scalar>::Zero(n);
     std::vector<std::pair<Index, Index>> pairs;
-    std::vector<Regime::Slope> slopes;
+    std::vector<typename Regime<Scalar>::Slope> slopes;
     std::size_t next_held = 0;
     for (std::size_t e = 0; e < system_.conductances.size(); ++e) {
       const ThermalSystem::Conductance& one = system_.conductances[e];
@@ -90,13 +93,20 @@ class Regimes {
       for (const BoundLaw& law : one.added) system_.derivatives(law, now, add);
       if (one.b >= 0 && slopes.size() > before) pairs.emplace_back(one.a, one.b);
     }
-    Propagator propagator(capacities_, conductances);
-    const Matrix& modes = propagator.modes();
-    Matrix links(n, static_cast<Index>(pairs.size()));
+    Propagator<Scalar> propagator(capacities_, conductances);
+    const MatrixX<Scalar>& modes = propagator.modes();
+    MatrixX<Scalar> links(n, static_cast<Index>(pairs.size()));
     for (std::size_t i = 0; i < pairs.size(); ++i)
       links.col(static_cast<Index>(i)) = modes.col(pairs[i].first) - modes.col(pairs[i].second);
+    VectorX<Scalar> ambient_drive = modes * to_ambient;
+    MatrixX<Scalar> outputs = modal_outputs(modes);
+    return {std::move(propagator), std::move(ambient_drive), std::move(links), std::move(slopes), std::move(outputs)};
+  }
+
+  MatrixX<Scalar> modal_outputs(const MatrixX<Scalar>& modes) const {
     const Index sensors = static_cast<Index>(system_.sensors.size());
-    Matrix outputs = Matrix::Zero(n, sensors + static_cast<Index>(system_.displacements.size()));
+    MatrixX<Scalar> outputs =
+        MatrixX<Scalar>::Zero(modes.rows(), sensors + static_cast<Index>(system_.displacements.size()));
     for (Index s = 0; s < sensors; ++s) {
       const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
       if (sensor.node < 0) continue;
@@ -107,14 +117,13 @@ class Regimes {
     for (std::size_t d = 0; d < system_.displacements.size(); ++d)
       for (const auto& [node, um_per_K] : system_.displacements[d].um_per_K)
         outputs.col(sensors + static_cast<Index>(d)) += um_per_K * modes.col(node);
-    Vector ambient_drive = modes * to_ambient;
-    return {std::move(propagator), std::move(ambient_drive), std::move(links), std::move(slopes), std::move(outputs)};
+    return outputs;
   }
 
-  const ThermalSystem& system_;
-  Vector capacities_;
+  const Lazy<ThermalSystem, Scalar>& system_;
+  VectorX<Scalar> capacities_;
   std::vector<std::size_t> held_;
-  std::map<std::vector<double>, Regime> regimes_;
+  std::map<std::vector<double>, Regime<Scalar>> regimes_;
 };
 
 }  // namespace thermfit::detail

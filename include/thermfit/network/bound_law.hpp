@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "thermfit/network/moment.hpp"
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// Which column of the sensitivities belongs to a number; -1 where its sensitivity is not wanted.
+using Column = Index;
+
+/// A law together with the values, columns and difference steps of the parameters of the effect it belongs to.
+struct BoundLaw {
+  struct Owner {
+    std::vector<double> values, steps;
+    std::vector<Column> columns;
+  };
+  Law law;
+  std::size_t owner = 0;
+};
+
+/// Node and share of what enters it.
+using Shares = std::vector<std::pair<Index, double>>;
+
+}  // namespace thermfit

@@ -1,0 +1,34 @@
+#pragma once
+
+/// White noise of slowly varying series, from second differences.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "thermfit/types.hpp"
+
+namespace thermfit {
+
+/// Standard deviation of what changes from sample to sample in all of `batches` together, in their unit; 0 where no
+/// three neighbouring samples are known.
+///
+/// A slow signal cancels in r_{k-1} - 2 r_k + r_{k+1}, whose variance is 6 times that of white noise. The median of
+/// absolute differences, .6745 of a normal standard deviation, so that rare jumps do not count as noise. Missing
+/// samples (NaN) are left out. A series is anything with size() and []: a Vector, a std::vector. Allocates.
+template <class Series = Vector>
+double white_noise(const std::vector<Series>& batches) {
+  std::vector<double> differences;
+  for (const Series& r : batches)
+    for (decltype(r.size()) k = 1; k + 1 < r.size(); ++k) {
+      const double d = r[k - 1] - 2 * r[k] + r[k + 1];
+      if (!std::isnan(d)) differences.push_back(std::abs(d));
+    }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return *middle / 0.6745 / std::sqrt(6.0);
+}
+
+}  // namespace thermfit
