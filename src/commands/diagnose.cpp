@@ -4,6 +4,7 @@
 #include "options/campaign_options.hpp"
 #include "report/diagnosis_json.hpp"
 #include "report/diagnosis_text.hpp"
+#include "thermfit/constants.hpp"
 #include "thermfit/diagnosis/diagnose.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/effects/catalogue.hpp"
@@ -64,7 +65,7 @@ unsigned thread_count(const Arguments& arguments) {
 Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
   PairedOptions options;
   options.room = arguments.value_or("--ambient", "");
-  options.reference_degC = arguments.number("--reference", -273.15, 2000).value_or(20);
+  options.reference_degC = arguments.number("--reference", absolute_zero_degC, 2000).value_or(20);
   options.effects = effect_names(arguments, "--effects");
   options.without = effect_names(arguments, "--without");
   options.seed = seed_of(arguments);

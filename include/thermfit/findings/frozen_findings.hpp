@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/constants.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/series_scale.hpp"
 
@@ -145,7 +146,7 @@ std::optional<Finding> frozen_finding(const Batch& batch, const MatrixX<Scalar>&
   std::stable_sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.length() > b.length(); });
   if (runs.size() > limits.judged_runs) runs.resize(limits.judged_runs);
   // Two normal readings fall on the same step of the resolution with probability resolution / (2 sqrt(pi) noise).
-  const double same = scale.noise > 0 ? std::min(1.0, scale.resolution / (2 * std::sqrt(M_PI) * scale.noise)) : 1;
+  const double same = scale.noise > 0 ? std::min(1.0, scale.resolution / (2 * std::sqrt(pi) * scale.noise)) : 1;
   for (const detail::EqualRun& run : runs) {
     if (run.length() < limits.moved_rows) break;
     if (run.first == 0 && run.length() < limits.first_rows) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "thermfit/statistics/white_noise.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
@@ -16,9 +17,6 @@ inline double median(std::vector<double> values) {
   if (values.size() % 2 == 1) return *middle;
   return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
-
-/// Median absolute value of a standard normal variable: quantile .75.
-constexpr double normal_median = 0.6745;
 
 /// The readings of a channel that there are, and the rows they are from.
 struct Series {
@@ -42,7 +40,7 @@ struct SeriesScale {
   double lowest = 0;      ///< smallest value
   double highest = 0;     ///< largest value
   double resolution = 0;  ///< smallest difference between two of its values; 0 for a constant channel
-  double noise = 0;       ///< standard deviation, from the median absolute second difference; blind to drift and steps
+  double noise = 0;       ///< standard deviation, by white_noise(): blind to drift and steps
 
   /// From the smallest to the largest value.
   double range() const { return highest - lowest; }
@@ -50,8 +48,7 @@ struct SeriesScale {
   double shake() const { return std::max(noise, resolution / std::sqrt(12.0)); }
 };
 
-/// Scale of a series. Second differences of white noise have 6 times its variance, and their median absolute value is
-/// `normal_median` of its standard deviation. Without readings everything is 0. Allocates.
+/// Scale of a series. Without readings everything is 0. Allocates.
 inline SeriesScale series_scale(const Series& series) {
   SeriesScale scale;
   if (series.size() == 0) return scale;
@@ -64,10 +61,7 @@ inline SeriesScale series_scale(const Series& series) {
   for (std::size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i] - sorted[i - 1] > rounding) smallest = std::min(smallest, sorted[i] - sorted[i - 1]);
   scale.resolution = smallest;
-  std::vector<double> second;
-  for (std::size_t i = 1; i + 1 < series.size(); ++i)
-    second.push_back(std::abs(series.values[i - 1] - 2 * series.values[i] + series.values[i + 1]));
-  scale.noise = second.empty() ? 0 : median(std::move(second)) / normal_median / std::sqrt(6.0);
+  scale.noise = white_noise(std::vector<std::vector<double>>{series.values});
   return scale;
 }
 

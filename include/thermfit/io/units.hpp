@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "thermfit/constants.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit {
@@ -57,9 +58,9 @@ inline constexpr std::array<NamedUnit, 45> unit_table{{
     {"F", {Quantity::temperature, 32, 5, 9}},
     {"deg F", {Quantity::temperature, 32, 5, 9}},
     {"Fahrenheit", {Quantity::temperature, 32, 5, 9}},
-    {"K", {Quantity::temperature, 273.15, 1, 1}},
-    {"kelvin", {Quantity::temperature, 273.15, 1, 1}},
-    {"Kelvin", {Quantity::temperature, 273.15, 1, 1}},
+    {"K", {Quantity::temperature, ice_point_K, 1, 1}},
+    {"kelvin", {Quantity::temperature, ice_point_K, 1, 1}},
+    {"Kelvin", {Quantity::temperature, ice_point_K, 1, 1}},
     {"um", {Quantity::length, 0, 1, 1}},
     {"µm", {Quantity::length, 0, 1, 1}},  // micro sign
     {"μm", {Quantity::length, 0, 1, 1}},  // Greek mu

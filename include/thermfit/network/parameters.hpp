@@ -119,90 +119,125 @@ ThermalNetwork with_placements(Lazy<ThermalNetwork, Scalar> network) {
   return network;
 }
 
-/// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
-/// sensor offsets, placements and responses, the start, then each effect's own (network.effects must be complete).
-/// Numbers that are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
-template <typename Scalar = double>
-std::vector<Parameter> calibration_parameters(const Lazy<ThermalNetwork, Scalar>& network,
-                                              const EffectLibrary& effects) {
+namespace detail {
+
+/// Appends what can be calibrated, with the prior that ThermalNetwork::Uncertainty gives it.
+class ParameterList {
+ public:
+  /// A number above 0, by its logarithm; `sd` is relative.
+  void positive(Parameter::Kind kind, std::size_t item, std::string name, const char* unit, double value, double sd) {
+    if (value > 0 && sd > 0) list_.push_back({kind, item, 0, std::move(name), unit, true, value, sd, 0});
+  }
+  void linear(Parameter::Kind kind, std::size_t item, std::size_t part, std::string name, const char* unit, double mean,
+              double sd) {
+    if (sd > 0) list_.push_back({kind, item, part, std::move(name), unit, false, mean, sd});
+  }
+  void add(Parameter parameter) { list_.push_back(std::move(parameter)); }
+  std::vector<Parameter> take() && { return std::move(list_); }
+
+ private:
+  std::vector<Parameter> list_;
+};
+
+template <typename Scalar>
+void add_physics(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& network) {
   using Kind = Parameter::Kind;
-  std::vector<Parameter> result;
-  const auto positive = [&](Kind kind, std::size_t item, std::string name, const char* unit, double value, double sd) {
-    if (value > 0 && sd > 0) result.push_back({kind, item, 0, std::move(name), unit, true, value, sd, 0});
-  };
   const ThermalNetwork::Uncertainty& sd = network.uncertainty;
   const auto& nodes = network.nodes;
+  const auto name = [&](Index node) -> const std::string& { return nodes[static_cast<std::size_t>(node)].name; };
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    positive(Kind::capacity, i, "capacity of " + nodes[i].name, "J/K", nodes[i].capacity_J_per_K, sd.capacity);
+    list.positive(Kind::capacity, i, "capacity of " + nodes[i].name, "J/K", nodes[i].capacity_J_per_K, sd.capacity);
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    positive(Kind::ambient, i, nodes[i].name + " to ambient", "W/K", nodes[i].ambient_W_per_K, sd.ambient);
+    list.positive(Kind::ambient, i, nodes[i].name + " to ambient", "W/K", nodes[i].ambient_W_per_K, sd.ambient);
   for (std::size_t i = 0; i < network.links.size(); ++i) {
     const ThermalNetwork::Link& link = network.links[i];
-    positive(Kind::conductance, i,
-             nodes[static_cast<std::size_t>(link.a)].name + " to " + nodes[static_cast<std::size_t>(link.b)].name,
-             "W/K", link.conductance_W_per_K, sd.conductance);
+    list.positive(Kind::conductance, i, name(link.a) + " to " + name(link.b), "W/K", link.conductance_W_per_K,
+                  sd.conductance);
   }
   for (std::size_t i = 0; i < network.heat_sources.size(); ++i)
-    positive(Kind::power, i, "power of " + network.heat_sources[i].name, "W", network.heat_sources[i].power_W,
-             sd.power);
-  const auto linear = [&](Kind kind, std::size_t item, std::size_t part, std::string name, const char* unit,
-                          double mean, double spread) {
-    if (spread > 0) result.push_back({kind, item, part, std::move(name), unit, false, mean, spread});
-  };
+    list.positive(Kind::power, i, "power of " + network.heat_sources[i].name, "W", network.heat_sources[i].power_W,
+                  sd.power);
   for (std::size_t i = 0; i < network.displacements.size(); ++i) {
     const ThermalNetwork::Displacement& output = network.displacements[i];
     for (std::size_t k = 0; k < output.um_per_K.size(); ++k) {
       const auto [node, value] = output.um_per_K[k];
-      linear(Kind::expansion, i, k, output.output + " per K of " + nodes[static_cast<std::size_t>(node)].name, "um/K",
-             value, sd.um_per_K * std::abs(value));
+      list.linear(Kind::expansion, i, k, output.output + " per K of " + name(node), "um/K", value,
+                  sd.um_per_K * std::abs(value));
     }
   }
-  for (std::size_t i = 0; i < network.sensors.size(); ++i)
-    if (network.sensors[i].node >= 0)
-      linear(Kind::sensor_offset, i, 0, "offset of " + network.sensors[i].column, "K", network.sensors[i].offset_K,
-             sd.sensor_offset_K);
-  for (std::size_t i = 0; i < network.sensors.size(); ++i)
-    for (std::size_t k = 0; k < network.sensors[i].placement.size(); ++k) {
-      const auto [node, share] = network.sensors[i].placement[k];
-      linear(Kind::placement, i, k,
-             network.sensors[i].column + " towards " + nodes[static_cast<std::size_t>(node)].name, "", share,
-             sd.sensor_placement);
+}
+
+template <typename Scalar>
+void add_readings(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& network) {
+  using Kind = Parameter::Kind;
+  const ThermalNetwork::Uncertainty& sd = network.uncertainty;
+  const std::vector<ThermalNetwork::Sensor>& sensors = network.sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if (sensors[i].node >= 0)
+      list.linear(Kind::sensor_offset, i, 0, "offset of " + sensors[i].column, "K", sensors[i].offset_K,
+                  sd.sensor_offset_K);
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    for (std::size_t k = 0; k < sensors[i].placement.size(); ++k) {
+      const auto [node, share] = sensors[i].placement[k];
+      list.linear(Kind::placement, i, k,
+                  sensors[i].column + " towards " + network.nodes[static_cast<std::size_t>(node)].name, "", share,
+                  sd.sensor_placement);
     }
-  for (std::size_t i = 0; i < network.sensors.size(); ++i) {
-    const ThermalNetwork::Sensor& sensor = network.sensors[i];
-    if (sensor.node >= 0)
-      linear(Kind::response, i, 0, "response of " + sensor.column, "s", sensor.response_s,
-             sd.sensor_response * network.time_constant_s(sensor.node));
-  }
-  if (network.initial.rule == ThermalNetwork::Initial::Rule::ambient)
-    if (sd.start_share > 0)
-      result.push_back({Kind::start, 0, 0, "share of the first readings in the start", "", false, network.initial.share,
-                        sd.start_share, 0, 1});
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if (sensors[i].node >= 0)
+      list.linear(Kind::response, i, 0, "response of " + sensors[i].column, "s", sensors[i].response_s,
+                  sd.sensor_response * network.time_constant_s(sensors[i].node));
+  if (network.initial.rule == ThermalNetwork::Initial::Rule::ambient && sd.start_share > 0)
+    list.add({Kind::start, 0, 0, "share of the first readings in the start", "", false, network.initial.share,
+              sd.start_share, 0, 1});
+}
+
+template <typename Scalar>
+void add_effects(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& network, const EffectLibrary& effects) {
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     const ThermalNetwork::AddedEffect& added = network.effects[e];
     const std::vector<EffectParameter> own = effects.at(added.effect).parameters(network, added);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      if (own[k].fixed) continue;
-      result.push_back({Kind::effect, e, k, added.effect + " at " + added.location + ": " + own[k].name, own[k].unit,
-                        own[k].logarithmic, own[k].mean, own[k].sd, own[k].lower, own[k].upper});
-    }
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (!own[k].fixed)
+        list.add({Parameter::Kind::effect, e, k, added.effect + " at " + added.location + ": " + own[k].name,
+                  own[k].unit, own[k].logarithmic, own[k].mean, own[k].sd, own[k].lower, own[k].upper});
   }
-  return result;
 }
 
+}  // namespace detail
+
+/// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
+/// sensor offsets, placements and responses, the start, then each effect's own (network.effects must be complete).
+/// Numbers that are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
+/// Throws Error on an unknown effect or place. Allocates.
+template <typename Scalar = double>
+std::vector<Parameter> calibration_parameters(const Lazy<ThermalNetwork, Scalar>& network,
+                                              const EffectLibrary& effects) {
+  detail::ParameterList list;
+  detail::add_physics<Scalar>(list, network);
+  detail::add_readings<Scalar>(list, network);
+  detail::add_effects<Scalar>(list, network, effects);
+  return std::move(list).take();
+}
+
+THERMFIT_COMPILED_TEMPLATE(std::vector<Parameter> calibration_parameters<double>(const ThermalNetwork&,
+                                                                                 const EffectLibrary&));
+
+/// The number that a parameter stands for, in a network of the same shape. Does not allocate.
 inline double value_in(const ThermalNetwork& network, const Parameter& parameter) {
   double result = 0;
   detail::visit_value(network, parameter, [&](const double& value) { result = value; });
   return result;
 }
 
+/// value_in() of each parameter. Allocates.
 inline Vector values_of(const ThermalNetwork& network, const std::vector<Parameter>& parameters) {
   Vector values(static_cast<Index>(parameters.size()));
   for (std::size_t j = 0; j < parameters.size(); ++j) values(static_cast<Index>(j)) = value_in(network, parameters[j]);
   return values;
 }
 
-/// The network with other values, in the order of `parameters`.
+/// The network with other values, in the order of `parameters`. Allocates the copy.
 inline ThermalNetwork with_values(ThermalNetwork network, const std::vector<Parameter>& parameters,
                                   const Vector& values) {
   for (std::size_t j = 0; j < parameters.size(); ++j)

@@ -60,7 +60,7 @@ Simulation simulate_batch(const Lazy<ThermalSystem, Scalar>& system, Regimes<Sca
 template <typename Scalar = double>
 std::vector<Simulation> simulate(const ThermalNetwork& network, const std::vector<Excitation>& excitations,
                                  const EffectLibrary& effects, const std::vector<Parameter>& parameters = {}) {
-  const ThermalSystem system = system_of(network, effects, parameters);
+  const ThermalSystem system = system_of<Scalar>(network, effects, parameters);
   detail::Regimes<Scalar> regimes(system);
   std::vector<Simulation> result;
   for (const Excitation& excitation : excitations)

@@ -6,8 +6,8 @@
 
 namespace thermfit {
 
-/// Uniform in -1 … 1, the next of a stream that `state` is the seed and then the counter of (splitmix64: Steele, Lea &
-/// Flood 2014). Does not allocate.
+/// Uniform in -1 … 1, the next of a stream that `state` is the seed and then the counter of (splitmix64 of Steele, Lea
+/// & Flood 2014 without its last shift, which moves digits past the ninth only). Does not allocate.
 inline double symmetric_uniform(std::uint64_t& state) {
   std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;

@@ -11,11 +11,14 @@
 
 namespace thermfit {
 
+/// Median absolute value of a standard normal variable: quantile .75.
+constexpr double normal_median = 0.6745;
+
 /// Standard deviation of what changes from sample to sample in all of `batches` together, in their unit; 0 where no
 /// three neighbouring samples are known.
 ///
 /// A slow signal cancels in r_{k-1} - 2 r_k + r_{k+1}, whose variance is 6 times that of white noise. The median of
-/// absolute differences, .6745 of a normal standard deviation, so that rare jumps do not count as noise. Missing
+/// absolute differences, `normal_median` of the standard deviation, so that rare jumps do not count as noise. Missing
 /// samples (NaN) are left out. A series is anything with size() and []: a Vector, a std::vector. Allocates.
 template <class Series = Vector>
 double white_noise(const std::vector<Series>& batches) {
@@ -28,7 +31,7 @@ double white_noise(const std::vector<Series>& batches) {
   if (differences.empty()) return 0;
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / 0.6745 / std::sqrt(6.0);
+  return *middle / normal_median / std::sqrt(6.0);
 }
 
 }  // namespace thermfit

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/constants.hpp"
 #include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/diagnosis/outputs/calibration_basis.hpp"
 #include "thermfit/network/effect.hpp"
@@ -237,8 +238,8 @@ class SignatureBuilder {
       }).acts_on = {{c, -1}};
       if (has_room())
         spread("radiation", name(c), Stage::boundary, [&](const PairedBatch& batch, std::size_t) -> Vector {
-          return ((batch.measured.col(c).array() + 273.15) / 293.15).pow(4) -
-                 ((batch.room_degC.array() + 273.15) / 293.15).pow(4);
+          return ((batch.measured.col(c).array() + ice_point_K) / 293.15).pow(4) -
+                 ((batch.room_degC.array() + ice_point_K) / 293.15).pow(4);
         }).acts_on = {{c, -1}};
       spread("thermal-memory", name(c), Stage::conduction, [&](const PairedBatch& batch, std::size_t) -> Vector {
         const Vector rise = since_first(batch.measured.col(c));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/calibration/machine_record.hpp"
+#include "thermfit/constants.hpp"
 #include "thermfit/network/schedule.hpp"
 
 namespace thermfit {
@@ -122,8 +123,7 @@ class Menu {
     for (Index k = 0; k < samples; ++k)
       for (Index i = 0; i < result.inputs.cols(); ++i)
         result.inputs(k, i) = level(i, static_cast<double>(k) / static_cast<double>(samples));
-    result.measured_ambient_degC =
-        room_degC_ + swing_K * (2 * 3.14159265358979 * time_s.array() / time_s(samples - 1)).sin();
+    result.measured_ambient_degC = room_degC_ + swing_K * (2 * pi * time_s.array() / time_s(samples - 1)).sin();
     const bool held = network_.ambient.rule != ThermalNetwork::Ambient::Rule::column;
     result.ambient_degC = result.measured_ambient_degC;
     if (held) result.ambient_degC = VectorX<Scalar>::Constant(samples, room_degC_);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "thermfit/constants.hpp"
 #include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/statistics/even_series.hpp"
 
@@ -16,7 +17,6 @@ namespace thermfit {
 template <typename Scalar = double>
 VectorX<Scalar> cosine_coefficients(const VectorX<Scalar>& series) {
   const Index count = series.size();
-  constexpr double pi = 3.14159265358979323846;
   VectorX<Scalar> result(count);
   for (Index k = 0; k < count; ++k) {
     double sum = 0;

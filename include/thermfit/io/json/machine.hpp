@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/constants.hpp"
 #include "thermfit/io/json/node.hpp"
 #include "thermfit/network/effect.hpp"
 #include "thermfit/network/network_check.hpp"
@@ -24,7 +25,7 @@ class MachineReader {
     root_.require_keys({"format", "name", "reference_temperature_C", "ambient", "nodes", "links", "heat_sources",
                         "displacement", "sensors", "initial", "uncertainty", "effects"});
     if (const auto name = root_.find("name")) network_.name = name->text();
-    network_.reference_degC = root_.at("reference_temperature_C").number(-273.15, 2000);
+    network_.reference_degC = root_.at("reference_temperature_C").number(absolute_zero_degC, 2000);
     read_ambient(root_.at("ambient"));
     read_nodes(root_.at("nodes"));
     if (const auto links = root_.find("links")) read_links(*links);
@@ -47,7 +48,7 @@ class MachineReader {
     using Rule = ThermalNetwork::Ambient::Rule;
     ThermalNetwork::Ambient& ambient = network_.ambient;
     if (node.json().is_number()) {
-      ambient = {Rule::constant, "", node.number(-273.15, 2000)};
+      ambient = {Rule::constant, "", node.number(absolute_zero_degC, 2000)};
     } else if (node.json().is_string()) {
       ambient = {node.text() == "initial" ? Rule::initial : Rule::column, node.text(), 0};
       if (ambient.rule == Rule::initial) ambient.column.clear();

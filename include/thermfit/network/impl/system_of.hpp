@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <vector>
 
+#include "thermfit/lazy.hpp"
 #include "thermfit/network/effect.hpp"
 #include "thermfit/network/parameters.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -30,30 +34,26 @@ inline void add_effect(ThermalSystem& system, const ThermalNetwork& network, std
   effect.act(system, network, added);
 }
 
-}  // namespace detail
-
-/// The elements of a network and its effects; `parameters` are the numbers whose sensitivities are wanted, in order.
-/// Throws Error on an unknown effect or place.
-inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrary& effects,
-                               const std::vector<Parameter>& parameters) {
-  using Kind = Parameter::Kind;
-  const auto column = [&](Kind kind, std::size_t item, std::size_t part = 0) {
-    for (std::size_t j = 0; j < parameters.size(); ++j)
-      if (parameters[j].kind == kind && parameters[j].item == item && parameters[j].part == part)
+/// Places of the parameters among the columns of the sensitivities.
+class ParameterColumns {
+ public:
+  explicit ParameterColumns(const std::vector<Parameter>& parameters) : parameters_(parameters) {}
+  Column operator()(Parameter::Kind kind, std::size_t item, std::size_t part = 0) const {
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      if (parameters_[j].kind == kind && parameters_[j].item == item && parameters_[j].part == part)
         return static_cast<Column>(j);
-    return Column{-1};
-  };
-  ThermalSystem system;
-  system.own_nodes = network.node_count();
-  system.reference_degC = network.reference_degC;
-  system.columns = static_cast<Index>(parameters.size());
-  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const Kind kind = parameters[j].kind;
-    if (kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&
-        (kind != Kind::sensor_offset || offsets_move_start))
-      system.state_columns.push_back(static_cast<Column>(j));
+    return -1;
   }
+
+ private:
+  const std::vector<Parameter>& parameters_;
+};
+
+/// Capacities, conductances and heat sources.
+template <typename Scalar>
+void add_elements(Lazy<ThermalSystem, Scalar>& system, const Lazy<ThermalNetwork, Scalar>& network,
+                  const ParameterColumns& column) {
+  using Kind = Parameter::Kind;
   for (std::size_t i = 0; i < network.nodes.size(); ++i) {
     ThermalSystem::Capacity capacity;
     capacity.J_per_K = network.nodes[i].capacity_J_per_K;
@@ -78,6 +78,13 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
     system.sources.push_back({source.into, source.power_W, source.scale, source.exponent,
                               source.input == "constant" ? -1 : system.input(source.input), column(Kind::power, i)});
   }
+}
+
+/// Sensors, the start that their first readings give, and displacements.
+template <typename Scalar>
+void add_channels(Lazy<ThermalSystem, Scalar>& system, const Lazy<ThermalNetwork, Scalar>& network,
+                  const ParameterColumns& column) {
+  using Kind = Parameter::Kind;
   for (std::size_t i = 0; i < network.sensors.size(); ++i) {
     ThermalSystem::Sensor sensor;
     sensor.node = network.sensors[i].node;
@@ -100,6 +107,30 @@ inline ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrar
     for (std::size_t k = 0; k < output.um_per_K.size(); ++k) output.columns.push_back(column(Kind::expansion, i, k));
     system.displacements.push_back(std::move(output));
   }
+}
+
+}  // namespace detail
+
+/// The elements of a network and its effects; `parameters` are the numbers whose sensitivities are wanted, in order.
+/// Throws Error on an unknown effect or place. Allocates.
+template <typename Scalar = double>
+ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrary& effects,
+                        const std::vector<Parameter>& parameters) {
+  using Kind = Parameter::Kind;
+  ThermalSystem system;
+  system.own_nodes = network.node_count();
+  system.reference_degC = network.reference_degC;
+  system.columns = static_cast<Index>(parameters.size());
+  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const Kind kind = parameters[j].kind;
+    if (kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&
+        (kind != Kind::sensor_offset || offsets_move_start))
+      system.state_columns.push_back(static_cast<Column>(j));
+  }
+  const detail::ParameterColumns column(parameters);
+  detail::add_elements<Scalar>(system, network, column);
+  detail::add_channels<Scalar>(system, network, column);
   for (std::size_t e = 0; e < network.effects.size(); ++e)
     detail::add_effect(system, network, e, effects.at(network.effects[e].effect), parameters);
   return system;
