@@ -12,35 +12,6 @@ namespace {
 
 constexpr std::size_t width = 80;
 
-/// What each effect means for a reader who does not know its name.
-std::string meaning(const std::string& effect) {
-  static const std::vector<std::pair<std::string, std::string>> meanings{
-      {"heat-source", "heat arises that the simulator lacks"},
-      {"friction-law", "a heat source grows with another power of its input"},
-      {"coolant", "a coolant takes heat away"},
-      {"ambient-drift", "the room does not stay at its first temperature"},
-      {"forced-convection", "cooling grows with speed"},
-      {"natural-convection", "cooling grows with the temperature difference"},
-      {"radiation", "heat is radiated"},
-      {"joint-conductance", "a joint conducts better or worse as it warms"},
-      {"missing-link", "heat flows between parts that the simulator does not connect"},
-      {"thermal-memory", "a hidden mass stores heat"},
-      {"missing-expansion", "a part expands that the simulator leaves out"},
-      {"nonlinear-expansion", "the expansion is not proportional to temperature"},
-      {"speed-shift", "the spindle moves with speed at once"},
-      {"hysteresis", "play delays the displacement"},
-      {"initial-gradient", "the machine does not start at room temperature"},
-      {"sensor-offset", "the sensor reads a constant too much or too little"},
-      {"sensor-gain", "the sensor's scale is wrong"},
-      {"sensor-drift", "the sensor's zero wanders"},
-      {"sensor-lag", "the sensor follows its place late"},
-      {"probe-drift", "the displacement probe or its holder drifts"},
-      {"clock-offset", "the displacement log has another clock"}};
-  for (const auto& [name, text] : meanings)
-    if (name == effect) return text;
-  return "";
-}
-
 std::string percent(double share, int decimals = 0) { return fixed_text(100 * share, decimals) + " %"; }
 
 /// Probabilities are never told as certain.
@@ -147,10 +118,9 @@ std::string sentence(const Diagnosis& diagnosis) {
   }
   std::string text;
   for (const FoundEffect& found : diagnosis.effects) {
-    const std::string means = found.meaning.empty() ? meaning(found.effect) : found.meaning;
     text += (text.empty() ? "at " : ", and at ") + (found.location == "all" ? "all nodes" : found.location);
     if (!found.same_place.empty()) text += " (or " + joined(found.same_place, " or ") + ")";
-    text += " " + (means.empty() ? "acts an effect of its own" : means) + " (" + found.effect +
+    text += " " + (found.meaning.empty() ? "acts an effect of its own" : found.meaning) + " (" + found.effect +
             (found.driver.empty() ? "" : " driven by " + found.driver) + ", confidence " +
             confidence_text(found.confidence) + ")";
   }

@@ -36,6 +36,44 @@ TEST_CASE("the catalogue holds the effects of the contract, each once and in the
   CHECK(standard_effects().names() == names);
 }
 
+TEST_CASE("every effect says what it means, each something else", "[effects]") {
+  const EffectLibrary library = standard_effects();
+  std::set<std::string> meanings;
+  for (const auto& effect : library.all()) meanings.insert(effect->meaning());
+  CHECK(meanings.size() == library.all().size());
+  CHECK(meanings.count("") == 0);
+}
+
+TEST_CASE("an effect asks for the schedule that shows it", "[effects]") {
+  const EffectLibrary library = standard_effects();
+  const auto block = [&](const std::string& effect, const std::string& location, const std::string& driver) {
+    return library.at(effect).shown_by({effect, location, driver, {}}, 4);
+  };
+  for (const std::string fault : {"sensor-offset", "sensor-gain", "sensor-drift", "sensor-lag"}) {
+    CHECK(block(fault, "T3", "").kind == ScheduleKind::sensor_swap);
+    CHECK(block(fault, "T3", "").subject == "T3");
+  }
+  CHECK(block("coolant", "head", "pump").kind == ScheduleKind::toggle);
+  CHECK(block("coolant", "head", "pump").subject == "pump");
+  CHECK(block("heat-source", "head", "feed").subject == "feed");
+  CHECK(block("heat-source", "head", "constant").kind == ScheduleKind::cool_down);
+  CHECK(block("friction-law", "bearing", "speed").kind == ScheduleKind::speed_stair);
+  CHECK(block("ambient-drift", "ambient", "").kind == ScheduleKind::idle_day);
+  CHECK(block("initial-gradient", "head", "").kind == ScheduleKind::repeat);
+}
+
+TEST_CASE("an offset is what calibration moves too; a clock and a start are no places of the network", "[effects]") {
+  const EffectLibrary library = standard_effects();
+  for (const auto& effect : library.all()) {
+    INFO(effect->name());
+    CHECK(effect->calibration_does_the_same() == (effect->name() == "sensor-offset"));
+    const std::string place = effect->disturbs({effect->name(), "somewhere", "", {}});
+    CHECK(place == (effect->name() == "clock-offset"       ? "clock"
+                    : effect->name() == "initial-gradient" ? "start"
+                                                           : "somewhere"));
+  }
+}
+
 TEST_CASE("every effect acts on the example machine, with complete parameters and places that can be read back",
           "[effects]") {
   const EffectLibrary library = standard_effects();

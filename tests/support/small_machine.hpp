@@ -19,7 +19,8 @@ inline thermfit::ThermalNetwork small_machine() {
 }
 
 /// What `machine` would measure in `count` batches of six hours with random speed stairs: noise of .03 K and .25 um.
-inline thermfit::Campaign small_campaign(const thermfit::ThermalNetwork& machine, int count, unsigned seed = 1) {
+inline thermfit::Campaign small_campaign(const thermfit::ThermalNetwork& machine, int count, unsigned seed = 1,
+                                         const thermfit::EffectLibrary& library = thermfit::standard_effects()) {
   using namespace thermfit;
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -34,7 +35,7 @@ inline thermfit::Campaign small_campaign(const thermfit::ThermalNetwork& machine
     double level = 2000;
     for (int k = 0; k < 121; ++k)
       batch.inputs.values(k, 0) = level = random() % 25 == 0 ? 1000. * static_cast<double>(random() % 7) : level;
-    const Simulation truth = simulate(machine, {excitation_of(machine, batch)}, standard_effects())[0];
+    const Simulation truth = simulate(machine, {excitation_of(machine, batch)}, library)[0];
     for (int k = 0; k < 121; ++k) {
       for (int c = 0; c < 3; ++c) batch.temperatures.values(k, c) = truth.channels(k, c) + .03 * normal(random);
       batch.errors.values(k, 0) = truth.channels(k, 4) + .25 * normal(random);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -16,6 +17,7 @@ class Coolant : public Effect {
  public:
   std::string name() const override { return "coolant"; }
   Stage stage() const override { return Stage::boundary; }
+  std::string meaning() const override { return "a coolant takes heat away"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& input : setting.on_off_inputs)
@@ -45,6 +47,22 @@ class Coolant : public Effect {
           node, [=](const Moment& now, const double* p) { return share * p[0] * now.inputs[input] / p[2]; },
           [](const Moment&, const double* p) { return p[1]; });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    if (where.driver.empty() || where.driver == "constant") return Effect::shown_by(where, batch_hours);
+    return block_that_shows(ScheduleKind::toggle, where.driver, batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      for (const TraceInput& input : traces.inputs())
+        if (input.on_off)
+          traces
+              .heat_flow(traces.name(c), input.name,
+                         {[&](const PairedBatch& batch, Index k) { return input.at(batch, k); },
+                          [&](const PairedBatch& batch, Index k) {
+                            return input.at(batch, k) * (batch.measured(k, c) - traces.reference_degC()) / 10;
+                          }})
+              .acts_on = {{c, 0}};
+  }
 };
 
 /// Ambient is not constant: theta_amb + share (measured - first measured); a share of 1 is its measured course.
@@ -52,6 +70,7 @@ class AmbientDrift : public Effect {
  public:
   std::string name() const override { return "ambient-drift"; }
   Stage stage() const override { return Stage::boundary; }
+  std::string meaning() const override { return "the room does not stay at its first temperature"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     if (setting.network.ambient.rule == ThermalNetwork::Ambient::Rule::column || !setting.ambient_varies) return {};
     return {{name(), "ambient", "", {{"share", 1}}}};
@@ -68,6 +87,14 @@ class AmbientDrift : public Effect {
       return now.ambient_degC + p[0] * (now.measured_ambient_degC - now.first_measured_ambient_degC);
     });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect&, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::idle_day, {}, 4 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    if (traces.has_room() && !traces.room_is_simulated())
+      traces.heat_flow("ambient", "",
+                       [](const PairedBatch& batch, Index k) { return OutputTraces::room_rise_K(batch, k); });
+  }
 };
 
 /// Air moved by a rotating part: H_i (1 + k (n/n0)^0.8).
@@ -75,6 +102,7 @@ class ForcedConvection : public Effect {
  public:
   std::string name() const override { return "forced-convection"; }
   Stage stage() const override { return Stage::boundary; }
+  std::string meaning() const override { return "cooling grows with speed"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& input : setting.inputs)
@@ -98,6 +126,20 @@ class ForcedConvection : public Effect {
         return std::max(-0.95, p[0] * std::pow(std::abs(now.inputs[input]) / p[1], 0.8));
       });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::speed_stair, where.driver, 1.25 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      for (const TraceInput& input : traces.inputs())
+        if (!input.on_off)
+          traces
+              .heat_flow(traces.name(c), input.name,
+                         [&](const PairedBatch& batch, Index k) {
+                           return std::pow(input.share(batch, k), 0.8) * traces.rise_over_room_K(batch, c, k);
+                         })
+              .acts_on = {{c, -1}};
+  }
 };
 
 /// Free air moves more the warmer the wall: H_i (1 + k (|theta - theta_amb|/10 K)^m).
@@ -105,6 +147,7 @@ class NaturalConvection : public Effect {
  public:
   std::string name() const override { return "natural-convection"; }
   Stage stage() const override { return Stage::boundary; }
+  std::string meaning() const override { return "cooling grows with the temperature difference"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : spread_places(setting.network))
@@ -123,6 +166,16 @@ class NaturalConvection : public Effect {
         return p[0] * std::pow(std::abs(now.temperature_degC[node] - now.ambient_degC) / 10, p[1]);
       });
   }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      traces
+          .heat_flow(traces.name(c), "",
+                     [&](const PairedBatch& batch, Index k) {
+                       const double rise = traces.rise_over_room_K(batch, c, k);
+                       return rise * std::pow(std::abs(rise) / 10, 0.5);
+                     })
+          .acts_on = {{c, -1}};
+  }
 };
 
 /// Radiation to walls that follow ambient with a lag: + k_i (theta_wall^4 - theta^4) in kelvin, with k_i = share H_i /
@@ -132,6 +185,7 @@ class Radiation : public Effect {
  public:
   std::string name() const override { return "radiation"; }
   Stage stage() const override { return Stage::boundary; }
+  std::string meaning() const override { return "heat is radiated"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : spread_places(setting.network))
@@ -152,6 +206,17 @@ class Radiation : public Effect {
         const double part = now.temperature_degC[node] + 273.15;
         return p[0] * (wall - part) * (wall + part) * (wall * wall + part * part) / (4 * 293.15 * 293.15 * 293.15);
       });
+  }
+  void trace(OutputTraces& traces) const override {
+    if (!traces.has_room()) return;
+    const auto fourth_power = [](double degC) { return std::pow((degC + 273.15) / 293.15, 4); };
+    for (const Index c : traces.thermometers())
+      traces
+          .heat_flow(traces.name(c), "",
+                     [&](const PairedBatch& batch, Index k) {
+                       return fourth_power(batch.measured(k, c)) - fourth_power(batch.room_degC(k));
+                     })
+          .acts_on = {{c, -1}};
   }
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -17,6 +18,7 @@ class JointConductance : public Effect {
  public:
   std::string name() const override { return "joint-conductance"; }
   Stage stage() const override { return Stage::conduction; }
+  std::string meaning() const override { return "a joint conducts better or worse as it warms"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const auto& link : setting.network.links) {
@@ -53,6 +55,23 @@ class JointConductance : public Effect {
           return std::max(-0.95, p[0] * (mean - reference) / 10);
         });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::speed_stair, where.driver, 1.25 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    const std::vector<Index> all = traces.thermometers();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        const Index a = all[i], b = all[j];
+        traces
+            .heat_flow(traces.name(a) + "-" + traces.name(b), "",
+                       [&](const PairedBatch& batch, Index k) {
+                         const double mean = (batch.measured(k, a) + batch.measured(k, b)) / 2;
+                         return (batch.measured(k, a) - batch.measured(k, b)) * (mean - traces.reference_degC()) / 10;
+                       })
+            .acts_on = {{a, 0}, {b, 0}};
+      }
+  }
 };
 
 /// Conduction between two nodes that have no link: + G (theta_j - theta_i).
@@ -60,6 +79,7 @@ class MissingLink : public Effect {
  public:
   std::string name() const override { return "missing-link"; }
   Stage stage() const override { return Stage::conduction; }
+  std::string meaning() const override { return "heat flows between parts that the simulator does not connect"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (Index a = 0; a < setting.network.node_count(); ++a)
@@ -78,6 +98,20 @@ class MissingLink : public Effect {
     const auto [a, b] = pair_at(network, added.location);
     system.add_conductance(a, b, [](const Moment&, const double* p) { return p[0]; });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect&, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::idle_day, {}, 4 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    const std::vector<Index> all = traces.thermometers();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        const Index a = all[i], b = all[j];
+        traces
+            .heat_flow(traces.name(a) + "-" + traces.name(b), "",
+                       [=](const PairedBatch& batch, Index k) { return batch.measured(k, a) - batch.measured(k, b); })
+            .acts_on = {{a, -1}, {b, 1}};
+      }
+  }
 };
 
 /// A hidden mass C behind the place through G, which remembers: it starts at the temperature of its node. Behind
@@ -86,6 +120,7 @@ class ThermalMemory : public Effect {
  public:
   std::string name() const override { return "thermal-memory"; }
   Stage stage() const override { return Stage::conduction; }
+  std::string meaning() const override { return "a hidden mass stores heat"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : spread_places(setting.network)) {
@@ -118,6 +153,19 @@ class ThermalMemory : public Effect {
       const Index hidden = system.add_node(node, [share](const Moment&, const double* p) { return share * p[0]; });
       system.add_conductance(hidden, node, [share](const Moment&, const double* p) { return share * p[1]; });
     }
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      traces
+          .heat_flow(traces.name(c), "",
+                     [&](const PairedBatch& batch) {
+                       Vector rise = batch.time_s;
+                       for (Index k = 0; k < rise.size(); ++k) rise(k) = OutputTraces::rise_K(batch, c, k);
+                       const Vector stored = low_pass(batch.time_s, rise, traces.lag_s(2), 0);
+                       for (Index k = 0; k < rise.size(); ++k) rise(k) -= stored(k);
+                       return rise;
+                     })
+          .acts_on = {{c, -1}};
   }
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -29,6 +30,7 @@ class MissingExpansion : public Effect {
  public:
   std::string name() const override { return "missing-expansion"; }
   Stage stage() const override { return Stage::expansion; }
+  std::string meaning() const override { return "a part expands that the simulator leaves out"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     if (setting.network.displacements.empty()) return result;
@@ -57,6 +59,12 @@ class MissingExpansion : public Effect {
                             return p[d] * (now.temperature_degC[node] - reference);
                           });
   }
+  void trace(OutputTraces& traces) const override {
+    for (const Index z : traces.displacements())
+      for (const Index c : traces.thermometers())
+        traces.added_to(z, traces.name(c), "", {"um_per_K", "um/K"},
+                        [=](const PairedBatch& batch, Index k) { return OutputTraces::rise_K(batch, c, k); });
+  }
 };
 
 /// Expansion with a square: + k (theta - reference)^2 for each node of the place.
@@ -64,6 +72,7 @@ class NonlinearExpansion : public Effect {
  public:
   std::string name() const override { return "nonlinear-expansion"; }
   Stage stage() const override { return Stage::expansion; }
+  std::string meaning() const override { return "the expansion is not proportional to temperature"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     if (setting.network.displacements.empty()) return result;
@@ -89,6 +98,14 @@ class NonlinearExpansion : public Effect {
                               return p[d] * rise * rise;
                             });
   }
+  void trace(OutputTraces& traces) const override {
+    for (const Index z : traces.displacements())
+      for (const Index c : traces.thermometers())
+        traces.added_to(z, traces.name(c), "", {"um_per_K2", "um/K2"}, [&](const PairedBatch& batch, Index k) {
+          const double rise = batch.measured(k, c) - traces.reference_degC();
+          return rise * rise;
+        });
+  }
 };
 
 /// The spindle moves at once with speed, without any change of temperature: + k (n/n0)^2.
@@ -96,6 +113,7 @@ class SpeedShift : public Effect {
  public:
   std::string name() const override { return "speed-shift"; }
   Stage stage() const override { return Stage::expansion; }
+  std::string meaning() const override { return "the spindle moves with speed at once"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : displacement_places(setting.network))
@@ -118,6 +136,16 @@ class SpeedShift : public Effect {
         return p[0] * u * u;
       });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::speed_stair, where.driver, 1.25 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index z : traces.displacements())
+      for (const TraceInput& input : traces.inputs())
+        traces.added_to(z, traces.place(z), input.name, {"shift_um", "um"}, [&](const PairedBatch& batch, Index k) {
+          return input.share(batch, k) * input.share(batch, k);
+        });
+  }
 };
 
 /// Play (backlash) of half-width r on the displacement: it stays until pushed by more than r either way.
@@ -125,6 +153,7 @@ class Hysteresis : public Effect {
  public:
   std::string name() const override { return "hysteresis"; }
   Stage stage() const override { return Stage::expansion; }
+  std::string meaning() const override { return "play delays the displacement"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : displacement_places(setting.network))
@@ -141,6 +170,14 @@ class Hysteresis : public Effect {
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
     for (const Index output : displacements_at(network, added.location)) system.displacement_series(output, play);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index z : traces.displacements())
+      for (double share = .004; share < .3; share *= 1.3) {
+        const double half_width = share * traces.range_of(z);
+        traces.bends(z, {"half_width_um", "um", half_width},
+                     [=](const Vector&, const Vector& course) { return thermfit::play(course, half_width); });
+      }
   }
 
  private:

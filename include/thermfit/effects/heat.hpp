@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -16,6 +17,7 @@ class HeatSourceEffect : public Effect {
  public:
   std::string name() const override { return "heat-source"; }
   Stage stage() const override { return Stage::heat; }
+  std::string meaning() const override { return "heat arises that the simulator lacks"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& node : node_places(setting.network)) {
@@ -37,6 +39,15 @@ class HeatSourceEffect : public Effect {
       return input < 0 ? p[0] : p[0] * now.inputs[input] / p[1];
     });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    if (where.driver.empty() || where.driver == "constant") return Effect::shown_by(where, batch_hours);
+    return block_that_shows(ScheduleKind::toggle, where.driver, batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    traces.heat_flow("", "constant", [](const PairedBatch&, Index) { return 1.; });
+    for (const TraceInput& input : traces.inputs())
+      traces.heat_flow("", input.name, [&](const PairedBatch& batch, Index k) { return input.share(batch, k); });
+  }
 };
 
 /// A modelled source that grows with another power of its input too: + P2 (u/scale)^m, spread as the source is.
@@ -44,6 +55,7 @@ class FrictionLaw : public Effect {
  public:
   std::string name() const override { return "friction-law"; }
   Stage stage() const override { return Stage::heat; }
+  std::string meaning() const override { return "a heat source grows with another power of its input"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const auto& source : setting.network.heat_sources)
@@ -66,6 +78,19 @@ class FrictionLaw : public Effect {
     system.heat(source.into, [input, scale = source.scale](const Moment& now, const double* p) {
       return input < 0 ? p[0] : p[0] * std::pow(std::abs(now.inputs[input]) / scale, p[1]);
     });
+  }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::speed_stair, where.driver, 1.25 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const TraceInput& input : traces.inputs()) {
+      if (input.on_off) continue;
+      for (const double exponent : {1.5, 2., 3.})
+        traces
+            .heat_flow("source driven by " + input.name, input.name,
+                       [&](const PairedBatch& batch, Index k) { return std::pow(input.share(batch, k), exponent); })
+            .shape = {{"exponent", "", exponent}};
+    }
   }
 };
 

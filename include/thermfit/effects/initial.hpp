@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -17,6 +18,7 @@ class InitialGradient : public Effect {
  public:
   std::string name() const override { return "initial-gradient"; }
   Stage stage() const override { return Stage::initial; }
+  std::string meaning() const override { return "the machine does not start at room temperature"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     const bool taken_over = setting.network.initial.rule == ThermalNetwork::Initial::Rule::measured;
@@ -57,6 +59,11 @@ class InitialGradient : public Effect {
       system.start(node, [own](const Moment& now, const double* p) { return p[0] * rise_K(now, own); });
     }
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect&, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::repeat, {}, batch_hours);
+  }
+  std::string disturbs(const ThermalNetwork::AddedEffect&) const override { return "start"; }
+  void trace(OutputTraces& traces) const override { traces.fading_start(); }
 
  private:
   static std::vector<std::size_t> sensors_at(const ThermalNetwork& network, const std::string& place) {

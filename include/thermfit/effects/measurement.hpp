@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
 #include "thermfit/network/thermal_system.hpp"
@@ -26,6 +27,9 @@ class SensorEffect : public Effect {
     sensor_at(network, added.location);
     return {parameter()};
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::sensor_swap, where.location, batch_hours);
+  }
 
  protected:
   virtual EffectParameter parameter() const = 0;
@@ -35,10 +39,16 @@ class SensorEffect : public Effect {
 class SensorOffset : public SensorEffect {
  public:
   std::string name() const override { return "sensor-offset"; }
+  std::string meaning() const override { return "the sensor reads a constant too much or too little"; }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
     system.reading(sensor_at(network, added.location),
                    [](const Moment& now, const double* p) { return now.reading_degC + p[0]; });
+  }
+  bool calibration_does_the_same() const override { return true; }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      traces.added_to(c, traces.name(c), "", {"offset_K", "K"}, [](const PairedBatch&, Index) { return 1.; });
   }
 
  protected:
@@ -49,12 +59,19 @@ class SensorOffset : public SensorEffect {
 class SensorGain : public SensorEffect {
  public:
   std::string name() const override { return "sensor-gain"; }
+  std::string meaning() const override { return "the sensor's scale is wrong"; }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
     system.reading(sensor_at(network, added.location),
                    [reference = network.reference_degC](const Moment& now, const double* p) {
                      return reference + p[0] * (now.reading_degC - reference);
                    });
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      traces.added_to(c, traces.name(c), "", {"gain", ""}, [&](const PairedBatch& batch, Index k) {
+        return batch.simulated(k, c) - traces.reference_degC();
+      });
   }
 
  protected:
@@ -69,10 +86,16 @@ class SensorGain : public SensorEffect {
 class SensorDrift : public SensorEffect {
  public:
   std::string name() const override { return "sensor-drift"; }
+  std::string meaning() const override { return "the sensor's zero wanders"; }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
     system.reading(sensor_at(network, added.location),
                    [](const Moment& now, const double* p) { return now.reading_degC + p[0] * now.time_s / 3600; });
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      traces.added_to(c, traces.name(c), "", {"rate_K_per_h", "K/h"},
+                      [](const PairedBatch& batch, Index k) { return batch.time_s(k) / 3600; });
   }
 
  protected:
@@ -84,6 +107,7 @@ class SensorDrift : public SensorEffect {
 class SensorLag : public SensorEffect {
  public:
   std::string name() const override { return "sensor-lag"; }
+  std::string meaning() const override { return "the sensor follows its place late"; }
   void act(ThermalSystem& system, const ThermalNetwork& network,
            const ThermalNetwork::AddedEffect& added) const override {
     const Index sensor = sensor_at(network, added.location);
@@ -93,6 +117,15 @@ class SensorLag : public SensorEffect {
     const Index tip = system.add_node(node, [J_per_K](const Moment&, const double*) { return J_per_K; });
     system.add_conductance(tip, node, [J_per_K](const Moment&, const double* p) { return J_per_K / p[0]; });
     system.read_from(sensor, tip);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index c : traces.thermometers())
+      for (double share = .003; share < .25; share *= 1.35) {
+        const double lag_s = share * traces.longest_batch_s();
+        traces.bends(c, {"lag_s", "s", lag_s}, [=](const Vector& time_s, const Vector& course) {
+          return low_pass(time_s, course, lag_s, course(0));
+        });
+      }
   }
 
  protected:
@@ -110,6 +143,7 @@ class ProbeDrift : public Effect {
  public:
   std::string name() const override { return "probe-drift"; }
   Stage stage() const override { return Stage::measurement; }
+  std::string meaning() const override { return "the displacement probe or its holder drifts"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     const bool room = setting.ambient_varies || setting.network.ambient.rule == ThermalNetwork::Ambient::Rule::column;
@@ -139,6 +173,18 @@ class ProbeDrift : public Effect {
         return p[0] * now.measured_ambient->felt_rise(at_least_a_second(p[1]), now.time_s);
       });
   }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect&, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::idle_day, {}, 4 * batch_hours);
+  }
+  void trace(OutputTraces& traces) const override {
+    for (const Index z : traces.displacements()) {
+      traces.added_to(z, traces.place(z), "time", {"rate_um_per_h", "um/h"},
+                      [](const PairedBatch& batch, Index k) { return batch.time_s(k) / 3600; });
+      if (traces.has_room())
+        traces.added_to(z, traces.place(z), "ambient", {"um_per_K", "um/K"},
+                        [](const PairedBatch& batch, Index k) { return OutputTraces::room_rise_K(batch, k); });
+    }
+  }
 };
 
 /// The displacements are logged late by d against temperatures and inputs.
@@ -146,6 +192,7 @@ class ClockOffset : public Effect {
  public:
   std::string name() const override { return "clock-offset"; }
   Stage stage() const override { return Stage::measurement; }
+  std::string meaning() const override { return "the displacement log has another clock"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     if (setting.network.displacements.empty()) return {};
     return {{name(), "displacement", "", {{"late_s", 0}}}};
@@ -159,6 +206,15 @@ class ClockOffset : public Effect {
   }
   void act(ThermalSystem& system, const ThermalNetwork&, const ThermalNetwork::AddedEffect&) const override {
     system.delay_displacements([](const Moment&, const double* p) { return p[0]; });
+  }
+  std::string disturbs(const ThermalNetwork::AddedEffect&) const override { return "clock"; }
+  void trace(OutputTraces& traces) const override {
+    for (const Index z : traces.displacements())
+      for (double share = .002; share < .12; share *= 1.3) {
+        const double delay_s = share * traces.longest_batch_s();
+        traces.bends(z, {"late_s", "s", delay_s},
+                     [=](const Vector& time_s, const Vector& course) { return delayed(time_s, course, delay_s); });
+      }
   }
 };
 

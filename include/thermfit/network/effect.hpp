@@ -13,6 +13,7 @@
 namespace thermfit {
 
 class ThermalSystem;
+class OutputTraces;
 
 /// Where in the chain from heat to reading an effect acts.
 enum class Stage { heat, boundary, conduction, expansion, measurement, initial };
@@ -113,8 +114,9 @@ struct Setting {
   }
 };
 
-/// One physical effect: its places, its parameters and its law. Stateless; the data of an effect that acts on a machine
-/// is a ThermalNetwork::AddedEffect. The catalogue is a list of these, and users add their own.
+/// One physical effect: its places, its parameters and its law, and how it is told, shown and recognised in outputs.
+/// Stateless; the data of an effect that acts on a machine is a ThermalNetwork::AddedEffect. The catalogue is a list of
+/// these, and users add their own. What has a body here may be left as it is.
 class Effect {
  public:
   virtual ~Effect() = default;
@@ -125,24 +127,23 @@ class Effect {
   /// Its parameters for this place, in the order in which the law receives them. Throws Error on an unknown place.
   virtual std::vector<EffectParameter> parameters(const ThermalNetwork& network,
                                                   const ThermalNetwork::AddedEffect& added) const = 0;
-  virtual std::string meaning() const { return {}; }
-  virtual bool calibration_does_the_same() const { return name() == "sensor-offset"; }
-  virtual std::string disturbs(const ThermalNetwork::AddedEffect& added) const { return name() == "clock-offset" ? "clock" : name() == "initial-gradient" ? "start" : added.location; }
-  virtual PlannedBlock shown_by(const ThermalNetwork::AddedEffect& where, double batch_hours) const {
-    const std::string n = name();
-    const auto of = [&](std::initializer_list<const char*> l) { for (auto x : l) if (n == x) return true; return false; };
-    PlannedBlock b;
-    b.machine_hours = 1.5 * batch_hours;
-    if (of({"sensor-offset", "sensor-gain", "sensor-drift", "sensor-lag"})) { b.kind = ScheduleKind::sensor_swap; b.subject = where.location; b.machine_hours = batch_hours; }
-    else if (of({"friction-law", "forced-convection", "speed-shift", "joint-conductance"})) { b.kind = ScheduleKind::speed_stair; b.machine_hours = 1.25 * batch_hours; }
-    else if (of({"probe-drift", "ambient-drift", "missing-link"})) { b.kind = ScheduleKind::idle_day; b.machine_hours = 4 * batch_hours; }
-    else if (of({"coolant", "heat-source"}) && !where.driver.empty() && where.driver != "constant") { b.kind = ScheduleKind::toggle; b.subject = where.driver; b.machine_hours = batch_hours; }
-    else if (of({"initial-gradient"})) { b.kind = ScheduleKind::repeat; b.machine_hours = batch_hours; }
-    return b;
-  }
   /// Adds its law to the system: see thermal_system.hpp for what can be added.
   virtual void act(ThermalSystem& system, const ThermalNetwork& network,
                    const ThermalNetwork::AddedEffect& added) const = 0;
+  /// What it means for a reader who does not know its name, as a clause: "a hidden mass stores heat". Empty: it has
+  /// nothing to say but its name.
+  virtual std::string meaning() const { return {}; }
+  /// The schedule that shows it by itself at `where`; a batch of the campaign lasts `batch_hours`.
+  virtual PlannedBlock shown_by(const ThermalNetwork::AddedEffect& /*where*/, double batch_hours) const {
+    return block_that_shows(ScheduleKind::cool_down, {}, 1.5 * batch_hours);
+  }
+  /// Adds what it would leave in the outputs of a simulator whose network is not known: see effects/output_traces.hpp.
+  /// An effect without a trace is not looked for there.
+  virtual void trace(OutputTraces& /*traces*/) const {}
+  /// Whether calibration moves the same number, so that its gap counts against the machine as given.
+  virtual bool calibration_does_the_same() const { return false; }
+  /// What a search that assumes no effect calls the place where it acts: a node, a sensor, an output, `clock`, `start`.
+  virtual std::string disturbs(const ThermalNetwork::AddedEffect& added) const { return added.location; }
 };
 
 /// The effects a simulation knows by name, in a fixed order.

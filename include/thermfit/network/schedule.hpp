@@ -3,6 +3,7 @@
 /// Pieces of machine time that can be asked for, as codes; a report puts them into words.
 
 #include <string>
+#include <utility>
 
 namespace thermfit {
 
@@ -35,5 +36,14 @@ struct PlannedBlock {
   int times = 1;
   double machine_hours = 0;
 };
+
+/// A block that shows an effect by itself.
+inline PlannedBlock block_that_shows(ScheduleKind kind, std::string subject, double machine_hours) {
+  PlannedBlock block;
+  block.kind = kind;
+  block.subject = std::move(subject);
+  block.machine_hours = machine_hours;
+  return block;
+}
 
 }  // namespace thermfit

@@ -1,14 +1,42 @@
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 
+#include "report/diagnosis_text.hpp"
 #include "support/catch.hpp"
+#include "support/small_machine.hpp"
 #include "support/withheld.hpp"
 
 using namespace thermfit;
 
 namespace {
 Diagnosis diagnose(const std::string& name, const PairedOptions& options = {}) {
-  return diagnose_paired(withheld_campaign(name, "real"), withheld_campaign(name, "sim"), options);
+  return diagnose_paired(withheld_campaign(name, "real"), withheld_campaign(name, "sim"), standard_effects(), options);
 }
+
+/// A shop door that is open for an hour and lets cold air in.
+class OpenDoor : public Effect {
+ public:
+  std::string name() const override { return "open-door"; }
+  Stage stage() const override { return Stage::boundary; }
+  std::vector<ThermalNetwork::AddedEffect> candidates(const Setting&) const override { return {}; }
+  std::vector<EffectParameter> parameters(const ThermalNetwork&, const ThermalNetwork::AddedEffect&) const override {
+    return {linear_parameter("drop_K", "K", 3)};
+  }
+  void act(ThermalSystem& system, const ThermalNetwork&, const ThermalNetwork::AddedEffect&) const override {
+    system.ambient_becomes(
+        [](const Moment& now, const double* p) { return now.ambient_degC - (open(now.time_s) ? p[0] : 0); });
+  }
+  void trace(OutputTraces& traces) const override {
+    traces.heat_flow("ambient", "time",
+                     [](const PairedBatch& batch, Index k) { return open(batch.time_s(k)) ? 1. : 0.; });
+  }
+  std::string meaning() const override { return "cold air comes in"; }
+  PlannedBlock shown_by(const ThermalNetwork::AddedEffect&, double batch_hours) const override {
+    return block_that_shows(ScheduleKind::toggle, "shop door", 2 * batch_hours);
+  }
+
+ private:
+  static bool open(double time_s) { return time_s > 7200 && time_s < 10800; }
+};
 }  // namespace
 
 TEST_CASE("a displacement that jumps with speed is named from the outputs alone, with its size", "[gap]") {
@@ -55,10 +83,37 @@ TEST_CASE("the number of threads does not change the result", "[gap]") {
 }
 
 TEST_CASE("a single batch is diagnosed with the weaker claim said", "[gap]") {
-  const Diagnosis found =
-      diagnose_paired({withheld_campaign("case-05", "real")[0]}, withheld_campaign("case-05", "sim"));
+  const Diagnosis found = diagnose_paired({withheld_campaign("case-05", "real")[0]},
+                                          withheld_campaign("case-05", "sim"), standard_effects());
   CHECK_FALSE(found.gap.held_out);
   bool said = false;
-  for (const std::string& claim : found.weaker_claims) said = said || claim.find("one batch only") == 0;
+  for (const WeakerClaim& claim : found.weaker_claims) said = said || claim.kind == WeakerClaim::Kind::one_batch;
   CHECK(said);
+}
+
+TEST_CASE("an effect of one's own is found in the outputs, told by its meaning, and shown by its own schedule",
+          "[gap]") {
+  EffectLibrary library = standard_effects();
+  library.add(std::make_shared<OpenDoor>());
+  ThermalNetwork machine = small_machine();
+  const Campaign nominal = small_campaign(machine, 4);
+  machine.effects = {{"open-door", "ambient", "time", {{"drop_K", 6}}}};
+  const Campaign real = small_campaign(machine, 4, 1, library);
+
+  const Diagnosis found = diagnose_paired(real, nominal, library);
+  REQUIRE(found.effects.size() == 1);
+  CHECK(found.effects[0].effect == "open-door");
+  CHECK(found.effects[0].location == "ambient");
+  CHECK(found.effects[0].meaning == "cold air comes in");
+  CHECK(cli::diagnosis_text(found).find("t ambient cold air comes in (open-door driven by time") != std::string::npos);
+  CHECK(diagnose_paired(real, nominal, standard_effects()).verdict != Verdict::effect);
+
+  FoundEffect doubtful = found.effects[0];
+  doubtful.alternatives = {{"radiation", "T1", "", .2}};
+  const NextExperiment next = experiment_by_kind(doubtful, library, 6);
+  REQUIRE(next.plan.size() == 2);
+  CHECK(next.plan[0].kind == ScheduleKind::toggle);
+  CHECK(next.plan[0].subject == "shop door");
+  CHECK(next.plan[0].machine_hours == 12);
+  CHECK(next.plan[1].kind == ScheduleKind::cool_down);
 }

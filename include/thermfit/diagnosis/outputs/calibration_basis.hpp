@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "thermfit/diagnosis/outputs/paired_campaign.hpp"
+#include "thermfit/effects/output_traces.hpp"
 #include "thermfit/statistics/filters.hpp"
 #include "thermfit/statistics/prior_fit.hpp"
 
@@ -22,14 +22,6 @@ struct CalibrationBasis {
 };
 
 namespace detail {
-
-/// Lags that span a batch: from its fiftieth to its fourfold duration.
-inline std::vector<double> lag_ladder_s(const PairedCampaign& campaign) {
-  double duration_s = 0;
-  for (const PairedBatch& batch : campaign.batches)
-    duration_s = std::max(duration_s, batch.time_s(batch.time_s.size() - 1));
-  return {.02 * duration_s, .07 * duration_s, .25 * duration_s, .8 * duration_s, 4 * duration_s};
-}
 
 /// What drives the simulated courses, and each drive's traces through first-order lags: every input to the first and
 /// second power, the ambient, and the fading of the start.
@@ -123,7 +115,7 @@ inline Contributions contributions(const PairedCampaign& campaign, const Drives&
 /// a displacement the temperature gaps and rises that carry expansion.
 inline CalibrationBasis calibration_basis(const PairedCampaign& campaign, const detail::Drives& drives, Index channel) {
   const bool displacement = channel >= campaign.temperatures;
-  const std::vector<double> lags_s = detail::lag_ladder_s(campaign);
+  const std::vector<double> lags_s = lag_ladder_s(campaign);
   const detail::Contributions parts = detail::contributions(campaign, drives, channel);
   CalibrationBasis basis;
   basis.explained = parts.explained;

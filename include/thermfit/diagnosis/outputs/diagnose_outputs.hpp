@@ -19,7 +19,7 @@ namespace thermfit {
 struct PairedOptions {
   std::string room;                  ///< ambient temperature column; empty: recognised
   double reference_degC = 20;        ///< of gain and nonlinear expansion
-  std::vector<std::string> effects;  ///< only these; empty: the whole catalogue
+  std::vector<std::string> effects;  ///< only these; empty: the whole library
   std::vector<std::string> without;  ///< not these
   unsigned seed = 1;
   unsigned threads = 0;       ///< 0: all cores
@@ -120,45 +120,46 @@ class PairedDiagnosis {
       for (std::size_t b = 0; b < campaign_.batches.size(); ++b)
         predicted.back().push_back(campaign_.batches[b].simulated.col(c) + campaign_.part(gap, b));
     }
-    signatures_.clear();
-    for (PairedSignature& one : SignatureBuilder(campaign_, options_.reference_degC, predicted).all())
-      if (wanted(one.effect)) signatures_.push_back(std::move(one));
-    scores_.assign(signatures_.size(), {});
-    in_parallel(signatures_.size(), options_.threads,
-                [&](std::size_t i) { scores_[i] = score_of(i, signatures_[i], channels_, campaign_); });
-    std::sort(scores_.begin(), scores_.end(), [](const SignatureScore& a, const SignatureScore& b) {
-      return a.gain != b.gain ? a.gain > b.gain : a.signature < b.signature;
+    OutputTraces traces(campaign_, options_.reference_degC, std::move(predicted));
+    for (const auto& effect : library_.all())
+      if (wanted(effect->name())) traces.add(*effect);
+    traces_ = traces.take();
+    scores_.assign(traces_.size(), {});
+    in_parallel(traces_.size(), options_.threads,
+                [&](std::size_t i) { scores_[i] = score_of(i, traces_[i], channels_, campaign_); });
+    std::sort(scores_.begin(), scores_.end(), [](const TraceScore& a, const TraceScore& b) {
+      return a.gain != b.gain ? a.gain > b.gain : a.trace < b.trace;
     });
   }
 
-  /// Where a signature lies: its own location, else the sensor in which it shows most.
-  std::string location_of(const SignatureScore& score) const {
-    const PairedSignature& signature = signatures_[score.signature];
-    if (!signature.location.empty()) return signature.location;
+  /// Where a trace lies: its own location, else the sensor in which it shows most.
+  std::string location_of(const TraceScore& score) const {
+    const OutputTrace& trace = traces_[score.trace];
+    if (!trace.location.empty()) return trace.location;
     const ChannelScore* strongest = strongest_sensor(score, campaign_.temperatures);
     return strongest ? name(strongest->channel) : "";
   }
 
   /// A hypothesis: the best variant of an effect at a place.
   struct Suspect {
-    const SignatureScore* score = nullptr;
+    const TraceScore* score = nullptr;
     std::string effect, location, driver;
     double probability = 0;
   };
 
   std::vector<Suspect> candidates() const {
     std::vector<Suspect> found;
-    for (const SignatureScore& score : scores_) {
-      const PairedSignature& signature = signatures_[score.signature];
+    for (const TraceScore& score : scores_) {
+      const OutputTrace& trace = traces_[score.trace];
       if (score.implausible) continue;
       const std::string location = location_of(score);
       const bool known = std::any_of(found.begin(), found.end(), [&](const Suspect& one) {
-        return one.effect == signature.effect && one.location == location && one.driver == signature.driver;
+        return one.effect == trace.effect && one.location == location && one.driver == trace.driver;
       });
-      if (!known) found.push_back({&score, signature.effect, location, signature.driver, 0});
+      if (!known) found.push_back({&score, trace.effect, location, trace.driver, 0});
     }
     if (found.empty()) return found;
-    // The signatures are approximations: differences below a few percent of the evidence decide nothing.
+    // The traces are approximations: differences below a few percent of the evidence decide nothing.
     const double softness = std::max(3., .03 * found[0].score->gain);
     double sum = std::exp(std::min(0., (options_.decisive_nats - found[0].score->gain) / softness));
     for (Suspect& one : found) sum += one.probability = std::exp((one.score->gain - found[0].score->gain) / softness);
@@ -167,7 +168,7 @@ class PairedDiagnosis {
   }
 
   /// A heat flow that leaves the displacement at its noise explains nothing worth naming.
-  bool matters(const SignatureScore& score) const {
+  bool matters(const TraceScore& score) const {
     if (score.channels.size() == 1) {
       const PairedChannel& one = channels_[static_cast<std::size_t>(score.channels[0].channel)];
       return score.channels[0].contribution > 3 * one.noise;
@@ -185,22 +186,14 @@ class PairedDiagnosis {
     if (found.empty() || found[0].score->gain < needed || !matters(*found[0].score)) return false;
     const Suspect& best = found[0];
     if (round > 0 && is_rival(best)) return false;
-    const PairedSignature& signature = signatures_[best.score->signature];
+    const OutputTrace& trace = traces_[best.score->trace];
     const std::vector<PairedChannel> before = channels_;
-    add_to_basis(signature);
+    add_to_basis(trace);
     if (round > 0 && !improves(before, *best.score)) {
       channels_ = before;
       return false;
     }
-    FoundEffect effect{best.effect,
-                       best.location,
-                       best.driver,
-                       0,
-                       signature.shape,
-                       {},
-                       {},
-                       "",
-                       library_.at(signature.effect).calibration_does_the_same()};
+    FoundEffect effect = named(trace, best.location, 0);
     for (const Suspect& one : found) {
       const bool same = one.effect == best.effect && one.driver == best.driver;
       if (same) effect.confidence += one.probability;
@@ -211,18 +204,31 @@ class PairedDiagnosis {
         effect.alternatives.push_back({one.effect, one.location, one.driver, one.probability});
     }
     const ChannelScore& first = best.score->channels[0];
-    if (best.score->channels.size() == 1 && !signature.unit_strength)
+    if (best.score->channels.size() == 1 && !trace.unit_strength)
       effect.parameters.push_back(
-          {signature.strength.name, signature.strength.unit, first.coefficients(0), first.standard_errors(0)});
+          {trace.strength.name, trace.strength.unit, first.coefficients(0), first.standard_errors(0)});
     if (best.score->channels.size() > 1)
       if (const ChannelScore* most = strongest_sensor(*best.score, campaign_.temperatures))
         effect.parameters.push_back({"rms_on_" + name(most->channel) + "_K", "K", most->contribution, -1});
     if (round == 0) {
-      stage_ = signature.stage;
+      stage_ = trace.stage;
       told_ = best.score->channels.size() == 1 ? first.channel : headline();
     }
     result_.effects.push_back(std::move(effect));
     return true;
+  }
+
+  FoundEffect named(const OutputTrace& trace, const std::string& location, double confidence) const {
+    const Effect& effect = library_.at(trace.effect);
+    FoundEffect result;
+    result.effect = trace.effect;
+    result.location = location;
+    result.driver = trace.driver;
+    result.confidence = confidence;
+    for (const TraceNumber& one : trace.shape) result.parameters.push_back({one.name, one.unit, one.value, -1});
+    result.meaning = effect.meaning();
+    result.against_as_given = effect.calibration_does_the_same();
+    return result;
   }
 
   bool is_rival(const Suspect& candidate) const {
@@ -233,7 +239,7 @@ class PairedDiagnosis {
   }
 
   /// A further effect must lower the held-out gap where it counts: by a fifth in the displacement, by half in a sensor.
-  bool improves(const std::vector<PairedChannel>& before, const SignatureScore& score) const {
+  bool improves(const std::vector<PairedChannel>& before, const TraceScore& score) const {
     const std::size_t output = static_cast<std::size_t>(headline());
     if (channels_[output].calibrated < .8 * before[output].calibrated) return true;
     const std::size_t own = static_cast<std::size_t>(score.channels[0].channel);
@@ -241,11 +247,11 @@ class PairedDiagnosis {
   }
 
   /// The effect's columns join what is free, so that everything is refitted together.
-  void add_to_basis(const PairedSignature& signature) {
-    for (const Index c : signature.channels) {
+  void add_to_basis(const OutputTrace& trace) {
+    for (const Index c : trace.channels) {
       PairedChannel& one = channel(c);
-      const SignaturePrior prior(signature, one);
-      const Matrix scaled = signature.columns * prior.scale.cwiseInverse().asDiagonal();
+      const TracePrior prior(trace, one);
+      const Matrix scaled = trace.columns * prior.scale.cwiseInverse().asDiagonal();
       one.gap -= scaled * prior.mean;
       Matrix regressors(scaled.rows(), one.basis.regressors.cols() + scaled.cols());
       regressors << one.basis.regressors, scaled;
@@ -267,14 +273,14 @@ class PairedDiagnosis {
       result_.ruled_out.push_back({one.effect, one.location, no_better ? RuledOutBy::calibration : RuledOutBy::evidence,
                                    no_better ? one.score->gain : found[0].score->gain - one.score->gain});
     }
-    for (const SignatureScore& score : scores_) {
-      const PairedSignature& signature = signatures_[score.signature];
-      if (!score.implausible || std::count(named.begin(), named.end(), signature.effect) > 0) continue;
-      if (std::any_of(found.begin(), found.end(), [&](const Suspect& one) { return one.effect == signature.effect; }))
+    for (const TraceScore& score : scores_) {
+      const OutputTrace& trace = traces_[score.trace];
+      if (!score.implausible || std::count(named.begin(), named.end(), trace.effect) > 0) continue;
+      if (std::any_of(found.begin(), found.end(), [&](const Suspect& one) { return one.effect == trace.effect; }))
         continue;
-      named.push_back(signature.effect);
+      named.push_back(trace.effect);
       result_.ruled_out.push_back(
-          {signature.effect, location_of(score), *score.implausible, score.channels[0].coefficients(0)});
+          {trace.effect, location_of(score), *score.implausible, score.channels[0].coefficients(0)});
     }
   }
 
@@ -310,40 +316,32 @@ class PairedDiagnosis {
   bool name_sensor_fault() {
     channels_ = first_;
     scan();
-    for (const SignatureScore& score : scores_) {
-      const PairedSignature& signature = signatures_[score.signature];
-      const bool sensor = signature.stage == Stage::measurement && signature.channels.size() == 1 &&
-                          signature.channels[0] < campaign_.temperatures;
+    for (const TraceScore& score : scores_) {
+      const OutputTrace& trace = traces_[score.trace];
+      const bool sensor =
+          trace.stage == Stage::measurement && trace.channels.size() == 1 && trace.channels[0] < campaign_.temperatures;
       if (score.gain < options_.decisive_nats) break;
       if (!sensor || score.implausible || score.channels[0].contribution < placement_tolerance_K) continue;
-      const Index own = signature.channels[0];
+      const Index own = trace.channels[0];
       std::vector<Suspect> rivals = candidates_in(own);
       if (rivals.empty() || rivals[0].score != &score) continue;
-      const double before = library_.at(signature.effect).calibration_does_the_same() ? channel(own).as_simulated
-                                                                                      : channel(own).calibrated;
-      add_to_basis(signature);
+      const double before =
+          library_.at(trace.effect).calibration_does_the_same() ? channel(own).as_simulated : channel(own).calibrated;
+      add_to_basis(trace);
       if (channel(own).calibrated > .67 * before) {
         channels_ = first_;
         continue;
       }
-      FoundEffect effect{signature.effect,
-                         name(own),
-                         "",
-                         rivals[0].probability,
-                         signature.shape,
-                         {},
-                         {},
-                         "",
-                         library_.at(signature.effect).calibration_does_the_same()};
+      FoundEffect effect = named(trace, name(own), rivals[0].probability);
       for (std::size_t i = 1; i < rivals.size(); ++i)
-        if (rivals[i].probability >= .05 && rivals[i].effect != signature.effect)
+        if (rivals[i].probability >= .05 && rivals[i].effect != trace.effect)
           effect.alternatives.push_back(
               {rivals[i].effect, rivals[i].location, rivals[i].driver, rivals[i].probability});
-      if (!signature.unit_strength)
-        effect.parameters.push_back({signature.strength.name, signature.strength.unit,
-                                     score.channels[0].coefficients(0), score.channels[0].standard_errors(0)});
+      if (!trace.unit_strength)
+        effect.parameters.push_back({trace.strength.name, trace.strength.unit, score.channels[0].coefficients(0),
+                                     score.channels[0].standard_errors(0)});
       result_.effects = {std::move(effect)};
-      stage_ = signature.stage;
+      stage_ = trace.stage;
       told_ = own;
       return true;
     }
@@ -355,17 +353,17 @@ class PairedDiagnosis {
   std::vector<Suspect> candidates_in(Index own) const {
     std::vector<Suspect> found;
     std::vector<double> gains;
-    for (const SignatureScore& score : scores_)
+    for (const TraceScore& score : scores_)
       for (const ChannelScore& part : score.channels) {
         if (part.channel != own || score.implausible) continue;
-        const PairedSignature& signature = signatures_[score.signature];
+        const OutputTrace& trace = traces_[score.trace];
         std::size_t at = 0;
-        while (at < found.size() && found[at].effect != signature.effect) ++at;
+        while (at < found.size() && found[at].effect != trace.effect) ++at;
         if (at == found.size()) {
-          found.push_back({&score, signature.effect, location_of(score), signature.driver, 0});
+          found.push_back({&score, trace.effect, location_of(score), trace.driver, 0});
           gains.push_back(part.gain);
         } else if (part.gain > gains[at]) {
-          found[at] = {&score, signature.effect, location_of(score), signature.driver, 0};
+          found[at] = {&score, trace.effect, location_of(score), trace.driver, 0};
           gains[at] = part.gain;
         }
       }
@@ -419,8 +417,8 @@ class PairedDiagnosis {
   Drives drives_;
   std::vector<PairedChannel> channels_;
   std::vector<PairedChannel> first_;  ///< with calibration alone
-  std::vector<PairedSignature> signatures_;
-  std::vector<SignatureScore> scores_;
+  std::vector<OutputTrace> traces_;
+  std::vector<TraceScore> scores_;
   Stage stage_ = Stage::heat;
   Index told_ = 0;  ///< the channel the gap is told for: the effect's own where it acts on one, else the headline
   Diagnosis result_;
@@ -430,7 +428,7 @@ class PairedDiagnosis {
 
 /// Diagnoses the gap between measured batches and a simulator's output for them, paired by name.
 ///
-/// Every effect of the catalogue acts through the trace it would leave in the outputs, given inputs, measured
+/// Every effect of the library acts through the trace it would leave in the outputs, given inputs, measured
 /// temperatures and time; what the simulator's own parameters could change (gains and lags of each drive's
 /// contribution, learnt from the simulated courses) is free in every comparison. An effect is named when its evidence
 /// beats calibration by `decisive_nats`; the gap before and after is that of batches left out. Throws Error when the

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Every signature weighed against calibration alone, channel by channel.
+/// Every trace weighed against calibration alone, channel by channel.
 
 #include <algorithm>
 #include <cmath>
@@ -8,50 +8,51 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/diagnosis/outputs/paired_channel.hpp"
-#include "thermfit/diagnosis/outputs/signatures.hpp"
+#include "thermfit/effects/output_traces.hpp"
 
 namespace thermfit {
 
-/// A signature's worth in one channel.
+/// A trace's worth in one channel.
 struct ChannelScore {
   Index channel = 0;
   double gain = 0;      ///< evidence over calibration alone, nats
-  Vector coefficients;  ///< of the signature's columns
+  Vector coefficients;  ///< of the trace's columns
   Vector standard_errors;
   double contribution = 0;  ///< rms of the fitted trace
   double direction = 0;     ///< its correlation with the second column (a heat flow, lagged), -1…1
 };
 
-struct SignatureScore {
-  std::size_t signature = 0;
+struct TraceScore {
+  std::size_t trace = 0;
   double gain = 0;  ///< summed over its channels, nats
   std::vector<ChannelScore> channels;
   std::optional<RuledOutBy> implausible;  ///< why it cannot be its effect; empty where it can
 };
 
-/// Prior of a signature's coefficients where its columns are scaled to rms one: free ones may be three times what the
+/// Prior of a trace's coefficients where its columns are scaled to rms one: free ones may be three times what the
 /// channel shows; a law of unit strength has 1 +- 10 %.
-struct SignaturePrior {
+struct TracePrior {
   Vector mean, sd, scale;
 
-  SignaturePrior(const PairedSignature& signature, const PairedChannel& channel) {
-    const Index columns = signature.columns.cols();
-    scale = (signature.columns.colwise().squaredNorm().transpose() / static_cast<double>(signature.columns.rows()))
+  TracePrior(const OutputTrace& trace, const PairedChannel& channel) {
+    const Index columns = trace.columns.cols();
+    scale = (trace.columns.colwise().squaredNorm().transpose() / static_cast<double>(trace.columns.rows()))
                 .cwiseSqrt()
                 .cwiseMax(1e-12);
     const double wide = 3 * std::max(channel.as_simulated, channel.calibrated) + 1e-9;
-    sd = signature.unit_strength ? Vector(.1 * scale) : Vector::Constant(columns, wide);
-    mean = signature.unit_strength ? scale : Vector::Zero(columns);
+    sd = trace.unit_strength ? Vector(.1 * scale) : Vector::Constant(columns, wide);
+    mean = trace.unit_strength ? scale : Vector::Zero(columns);
   }
 };
 
-inline ChannelScore score_in(const PairedSignature& signature, const PairedChannel& channel, Index index) {
-  const SignaturePrior prior(signature, channel);
+inline ChannelScore score_in(const OutputTrace& trace, const PairedChannel& channel, Index index) {
+  const TracePrior prior(trace, channel);
   const Index columns = prior.scale.size(), known = channel.basis.prior_sd.size();
-  const Matrix scaled = signature.columns * prior.scale.cwiseInverse().asDiagonal();
+  const Matrix scaled = trace.columns * prior.scale.cwiseInverse().asDiagonal();
   const Vector gap = channel.gap - scaled * prior.mean;
-  Matrix products(known + columns + 1, known + columns + 1);  // calibration, signature, gap
+  Matrix products(known + columns + 1, known + columns + 1);  // calibration, trace, gap
   products.topLeftCorner(known, known) = channel.products.topLeftCorner(known, known);
   products.block(known, known, columns, columns).noalias() = scaled.transpose() * scaled;
   products.block(0, known, known, columns).noalias() = channel.basis.regressors.transpose() * scaled;
@@ -66,21 +67,21 @@ inline ChannelScore score_in(const PairedSignature& signature, const PairedChann
   const Evidence evidence = profiled_evidence(channel, products, prior_sd);
   const PriorFit fit = fit_with_prior(products, prior_sd, evidence.noise, true);
   const Vector tail = fit.coefficients.tail(columns) + prior.mean;
-  const Vector trace = scaled * tail;
+  const Vector fitted = scaled * tail;
   ChannelScore score{index,
                      evidence.log - channel.evidence,
                      tail.cwiseQuotient(prior.scale),
                      fit.covariance.diagonal().tail(columns).cwiseSqrt().cwiseQuotient(prior.scale),
-                     rms_of(trace),
+                     rms_of(fitted),
                      0};
   if (score.contribution > 0)
-    score.direction = trace.dot(scaled.col(std::min<Index>(1, columns - 1))) /
-                      (score.contribution * static_cast<double>(trace.size()));
+    score.direction = fitted.dot(scaled.col(std::min<Index>(1, columns - 1))) /
+                      (score.contribution * static_cast<double>(fitted.size()));
   return score;
 }
 
-/// The sensor in which a signature shows most, or null where it shows in none.
-inline const ChannelScore* strongest_sensor(const SignatureScore& score, Index temperatures) {
+/// The sensor in which a trace shows most, or null where it shows in none.
+inline const ChannelScore* strongest_sensor(const TraceScore& score, Index temperatures) {
   const ChannelScore* strongest = nullptr;
   for (const ChannelScore& one : score.channels)
     if (one.channel < temperatures && (!strongest || one.contribution > strongest->contribution)) strongest = &one;
@@ -102,40 +103,40 @@ constexpr double shows_here = .4;
 
 /// A law of unit strength must come out with a coefficient near one; a heat exchange between two places must show
 /// most at one of them (or on its node), any other heat flow at least strongly where it acts, with the sign of its law.
-inline std::optional<RuledOutBy> why_implausible(const PairedSignature& signature, const SignatureScore& score,
+inline std::optional<RuledOutBy> why_implausible(const OutputTrace& trace, const TraceScore& score,
                                                  const PairedCampaign& campaign) {
-  if (signature.unit_strength) {
+  if (trace.unit_strength) {
     const double strength = score.channels[0].coefficients(0);
     if (strength > least_strength && strength < most_strength) return std::nullopt;
     return RuledOutBy::strength;
   }
-  if (signature.acts_on.empty()) return std::nullopt;
+  if (trace.acts_on.empty()) return std::nullopt;
   const ChannelScore* strongest = strongest_sensor(score, campaign.temperatures);
   bool here = false;
   double directions = 1;
-  for (const auto& [channel, sign] : signature.acts_on) {
+  for (const auto& [channel, sign] : trace.acts_on) {
     here = here || (strongest && same_node(campaign, strongest->channel, channel));
     for (const ChannelScore& one : score.channels) {
       if (one.channel != channel) continue;
-      here = here || (signature.acts_on.size() == 1 && one.contribution > shows_here * strongest->contribution);
+      here = here || (trace.acts_on.size() == 1 && one.contribution > shows_here * strongest->contribution);
       if (sign * one.direction < 0) return RuledOutBy::sign;
       directions *= one.direction;
     }
   }
   if (!here) return RuledOutBy::elsewhere;
-  if (signature.acts_on.size() == 2 && directions > 0) return RuledOutBy::same_sign;
+  if (trace.acts_on.size() == 2 && directions > 0) return RuledOutBy::same_sign;
   return std::nullopt;
 }
 
-inline SignatureScore score_of(std::size_t index, const PairedSignature& signature,
-                               const std::vector<PairedChannel>& channels, const PairedCampaign& campaign) {
-  SignatureScore score;
-  score.signature = index;
-  for (const Index channel : signature.channels) {
-    score.channels.push_back(score_in(signature, channels[static_cast<std::size_t>(channel)], channel));
+inline TraceScore score_of(std::size_t index, const OutputTrace& trace, const std::vector<PairedChannel>& channels,
+                           const PairedCampaign& campaign) {
+  TraceScore score;
+  score.trace = index;
+  for (const Index channel : trace.channels) {
+    score.channels.push_back(score_in(trace, channels[static_cast<std::size_t>(channel)], channel));
     score.gain += score.channels.back().gain;
   }
-  score.implausible = why_implausible(signature, score, campaign);
+  score.implausible = why_implausible(trace, score, campaign);
   return score;
 }
 

@@ -1,4 +1,4 @@
-#include "thermfit/diagnosis/outputs/paired_campaign.hpp"
+#include "thermfit/batch/paired_campaign.hpp"
 
 #include "support/catch.hpp"
 
@@ -34,8 +34,7 @@ TEST_CASE("differently sampled courses are compared at measured samples within t
   const PairedCampaign paired = pair_campaigns({batch_of("K01", coarse, .01)}, {batch_of("K01", fine, .02)});
   REQUIRE(paired.batches[0].time_s.size() == 19);
   CHECK((paired.batches[0].simulated.col(0) - 2 * paired.batches[0].measured.col(0)).norm() < 1e-9);
-  CHECK(paired.remarks.size() == 1);
-  CHECK(paired.remarks[0].find("sampling differs") == 0);
+  CHECK(paired.resampled);
 }
 
 TEST_CASE("the temperature that the simulator took over is its room", "[gap]") {
@@ -80,6 +79,6 @@ TEST_CASE("batches and channels that only one side has are left out and named", 
   const PairedCampaign paired = pair_campaigns({batch_of("K01", coarse, .01), batch_of("K02", coarse, .01)}, {sim});
   CHECK(paired.batches.size() == 1);
   CHECK(paired.channels == std::vector<std::string>{"room", "Z"});
-  CHECK(paired.remarks == std::vector<std::string>{"T1: measured but not simulated; left out",
-                                                   "batch K02 has no simulated counterpart; left out"});
+  CHECK(paired.not_simulated == std::vector<std::string>{"T1"});
+  CHECK(paired.not_paired == std::vector<std::string>{"K02"});
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Measured batches beside what a simulator said for them, sample by sample.
+/// Measured batches beside what a simulator said for them, sample by sample, and how they are paired.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,9 @@
 
 namespace thermfit {
 
+/// One batch, measured and simulated.
 struct PairedBatch {
-  std::string name;
+  std::string name;  ///< of the measured batch
   Vector time_s;     ///< since the first common sample
   Matrix measured;   ///< samples x channels
   Matrix simulated;  ///< samples x channels, at the measured samples
@@ -24,19 +25,22 @@ struct PairedBatch {
 
 /// Channels are the temperatures both sides have, then the displacements.
 struct PairedCampaign {
-  std::vector<std::string> channels, inputs;
-  Index temperatures = 0;  ///< the first so many channels are degC, the others um
-  std::string room;        ///< the ambient column: given, or the temperature that the simulator took over unchanged
-  bool room_is_simulated = false;  ///< the simulator used the measured ambient
-  bool zeroed = true;              ///< displacements count from their first sample
-  std::vector<PairedBatch> batches;
+  std::vector<std::string> channels;  ///< names that both sides have
+  std::vector<std::string> inputs;    ///< names of the measured side
+  Index temperatures = 0;             ///< the first so many channels are degC, the others um
+  std::string room;  ///< the ambient column: given, or the temperature that the simulator took over unchanged
+  bool room_is_simulated = false;          ///< the simulator used the measured ambient
+  bool zeroed = true;                      ///< displacements count from their first sample
+  std::vector<PairedBatch> batches;        ///< in the order of the measured ones
   std::vector<std::string> not_simulated;  ///< temperatures that were measured only; left out
   std::vector<std::string> not_paired;     ///< batches without a simulated counterpart; left out
   bool resampled = false;                  ///< simulated values were read off at measured times
 
+  /// Temperatures and displacements.
   Index channel_count() const { return static_cast<Index>(channels.size()); }
   /// Whether the simulator is answerable for a channel; the ambient is an input.
   bool is_output(Index c) const { return c >= temperatures || channels[static_cast<std::size_t>(c)] != room; }
+  /// Samples of all batches.
   Index rows() const { return first_row(batches.size()); }
 
   /// Where batch `b` begins when all are stacked below each other.
@@ -73,18 +77,20 @@ inline std::vector<std::string> common_names(const std::vector<std::string>& lef
   return names;
 }
 
-inline void require_clock(const Batch& batch) {
+template <typename Scalar>
+void require_clock(const Batch& batch) {
   if (!batch.has_time() || batch.rows() < 8)
     throw Error(batch.source.empty() ? batch.name : batch.source,
                 batch.has_time() ? "only " + std::to_string(batch.rows()) + " samples" : "no time column",
                 "a time column and at least 8 samples", "paired diagnosis compares courses in time");
   for (const Channels* channels : {&batch.temperatures, &batch.errors, &batch.inputs})
-    if (!channels->values.allFinite())
+    if (const MatrixX<Scalar>& values = channels->values; !values.allFinite())
       throw Error(batch.source.empty() ? batch.name : batch.source, "missing values", "numbers only",
                   "read it with --missing drop or --missing hold");
 }
 
-inline PairedBatch pair(const Batch& real, const Batch& sim, const PairedCampaign& campaign, bool& resampled) {
+template <typename Scalar>
+PairedBatch pair(const Batch& real, const Batch& sim, const PairedCampaign& campaign, bool& resampled) {
   const double from = std::max(real.time_s(0), sim.time_s(0));
   const double to = std::min(real.time_s(real.rows() - 1), sim.time_s(sim.rows() - 1));
   std::vector<Index> rows;
@@ -104,13 +110,14 @@ inline PairedBatch pair(const Batch& real, const Batch& sim, const PairedCampaig
   for (Index k = 0; k < count; ++k) {
     const Index row = rows[static_cast<std::size_t>(k)];
     pair.time_s(k) = real.time_s(row) - real.time_s(rows[0]);
-    pair.inputs.row(k) = real.inputs.values.row(row);
+    for (Index i = 0; i < real.inputs.count(); ++i) pair.inputs(k, i) = real.inputs.values(row, i);
   }
   for (Index c = 0; c < campaign.channel_count(); ++c) {
     const std::string& name = campaign.channels[static_cast<std::size_t>(c)];
     const Channels& measured = c < campaign.temperatures ? real.temperatures : real.errors;
     const Channels& simulated = c < campaign.temperatures ? sim.temperatures : sim.errors;
-    const Vector course = simulated.values.col(simulated.find(name));
+    const MatrixX<Scalar>& values = simulated.values;
+    const VectorX<Scalar> course = values.col(simulated.find(name));
     for (Index k = 0; k < count; ++k) {
       const Index row = rows[static_cast<std::size_t>(k)];
       pair.measured(k, c) = measured.values(row, measured.find(name));
@@ -128,11 +135,12 @@ inline PairedBatch pair(const Batch& real, const Batch& sim, const PairedCampaig
 /// linearly at the measured samples, within the time both cover. `room` names the ambient temperature; empty: the
 /// column in which measured and simulated agree to .006 K, if there is exactly one. Throws Error when no batch or no
 /// channel pairs, when a batch has no clock, or has missing values.
-inline PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, std::string room = {}) {
+template <typename Scalar = double>
+PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, std::string room = {}) {
   PairedCampaign result;
   if (real.empty() || sim.empty()) throw Error("paired diagnosis", "no batches", "measured and simulated batches");
   for (const Campaign* campaign : {&real, &sim})
-    for (const Batch& batch : *campaign) detail::require_clock(batch);
+    for (const Batch& batch : *campaign) detail::require_clock<Scalar>(batch);
   const std::vector<std::string> temperatures =
       detail::common_names(real[0].temperatures.names, sim[0].temperatures.names);
   const std::vector<std::string> errors = detail::common_names(real[0].errors.names, sim[0].errors.names);
@@ -153,7 +161,7 @@ inline PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, 
       result.not_paired.push_back(batch.name);
       continue;
     }
-    result.batches.push_back(detail::pair(batch, *same, result, result.resampled));
+    result.batches.push_back(detail::pair<Scalar>(batch, *same, result, result.resampled));
   }
   if (result.batches.empty())
     throw Error("--sim", "no simulated batch has the name of a measured one", "files with equal names on both sides",
@@ -164,9 +172,10 @@ inline PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, 
     bool copy = true, constant = true;
     double change = 0;
     for (const PairedBatch& batch : result.batches) {
-      copy = copy && (batch.measured.col(c) - batch.simulated.col(c)).cwiseAbs().maxCoeff() < .006;
-      constant = constant && batch.simulated.col(c).maxCoeff() - batch.simulated.col(c).minCoeff() < 1e-9;
-      change = std::max(change, batch.measured.col(c).maxCoeff() - batch.measured.col(c).minCoeff());
+      const MatrixX<Scalar>&measured = batch.measured, &simulated = batch.simulated;
+      copy = copy && (measured.col(c) - simulated.col(c)).cwiseAbs().maxCoeff() < .006;
+      constant = constant && simulated.col(c).maxCoeff() - simulated.col(c).minCoeff() < 1e-9;
+      change = std::max(change, measured.col(c).maxCoeff() - measured.col(c).minCoeff());
     }
     if (copy) copies.push_back(result.channels[static_cast<std::size_t>(c)]);
     if (constant && change > 0) held.push_back(result.channels[static_cast<std::size_t>(c)]);
@@ -180,8 +189,10 @@ inline PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, 
   result.room = room;
   for (PairedBatch& batch : result.batches) {
     const auto at = std::find(result.channels.begin(), result.channels.begin() + result.temperatures, room);
-    if (column >= 0 && at != result.channels.begin() + result.temperatures)
-      batch.room_degC = batch.measured.col(at - result.channels.begin());
+    if (column >= 0 && at != result.channels.begin() + result.temperatures) {
+      const MatrixX<Scalar>& measured = batch.measured;
+      batch.room_degC = measured.col(at - result.channels.begin());
+    }
     for (Index c = result.temperatures; c < result.channel_count(); ++c)
       result.zeroed = result.zeroed && std::abs(batch.simulated(0, c)) < 1e-9;
   }
