@@ -19,8 +19,24 @@ using MatrixX = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using RowMatrixX = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Any matrix expression as one: itself where its columns are contiguous, a copy where they are not (row-major,
+/// strided, a difference).
+template <typename Scalar>
+using MatrixView = Eigen::Ref<const MatrixX<Scalar>>;
+
 using Vector = VectorX<double>;        ///< column of doubles
 using Matrix = MatrixX<double>;        ///< matrix of doubles, by columns
 using RowMatrix = RowMatrixX<double>;  ///< matrix of doubles, by rows
+
+namespace detail {
+
+/// `value` itself, as an expression that depends on Scalar: what a template computes with a plain double member is
+/// then instantiated where it is used, not where it is read.
+template <typename Scalar, typename T>
+constexpr const T& lazy(const T& value) noexcept {
+  return value;
+}
+
+}  // namespace detail
 
 }  // namespace thermfit

@@ -33,17 +33,17 @@ std::vector<Index> chosen_points(const Campaign& campaign, const Arguments& argu
     return {};
   }
   plan.selection = rule;
-  const Observations all = merged(observe(campaign, plan.reference));
+  const Observations<> all = merged(observe(campaign, plan.reference));
   return rule == "fcgr" ? ByFcgr{}(all, count) : ByCorrelation{}(all, count);
 }
 
 void print_jackknife(const Campaign& campaign, const TrainedModel& model, const TrainingPlan& plan, Console& console) {
   if (campaign.size() < 3) return;
-  std::vector<Moments> batches;
-  for (const Observations& batch : observe(campaign, plan.reference))
+  std::vector<Moments<>> batches;
+  for (const Observations<>& batch : observe(campaign, plan.reference))
     batches.push_back(plan.points.empty() ? batch.moments : batch.moments.subset(plan.points));
   const FitOptions same = settled(plan.options, model);
-  const CoefficientSpread spread = jackknife(batches, [&](const Moments& m) { return fit(plan.method, m, same); });
+  const CoefficientSpread<> spread = jackknife(batches, [&](const Moments<>& m) { return fit(plan.method, m, same); });
   const Matrix half = spread.half_width(.95), p = spread.p_values();
   console.line("\nCoefficients with 95 % intervals from leaving batches out, um/K:");
   std::vector<std::string> header{"point"};

@@ -27,13 +27,13 @@ struct Ranking {
 
 std::vector<Ranking> rank_all(const Campaign& campaign, const Arguments& arguments, Index count) {
   const bool fcgr = arguments.choice("--rule", {"correlation", "fcgr"}, "correlation") == "fcgr";
-  std::vector<Observations> batches = observe(campaign, temperature_reference(arguments));
+  std::vector<Observations<>> batches = observe(campaign, temperature_reference(arguments));
   if (batches.size() > 1) {
     batches.push_back(merged(batches));
     batches.back().name = "all";
   }
   std::vector<Ranking> rankings;
-  for (const Observations& batch : batches)
+  for (const Observations<>& batch : batches)
     rankings.push_back(
         {batch.name, fcgr ? ByFcgr{}(batch, count) : ByCorrelation{}(batch, count), correlations(batch.moments)});
   return rankings;

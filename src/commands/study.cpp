@@ -42,11 +42,11 @@ void find_card(const Campaign& campaign, StudyReport& report) {
 /// Whether the first method stays below the limits the user set.
 Exit judge(const StudyReport& report, const Arguments& arguments, Console& console) {
   const auto mean = arguments.number("--limit-s-mean", 0, 1e9), std = arguments.number("--limit-s-std", 0, 1e9);
-  const SweepStep* step = report.study.methods.front().chosen();
+  const SweepStep<>* step = report.study.methods.front().chosen();
   if (!step) return Exit::negative;
   Exit exit = Exit::done;
   for (std::size_t e = 0; e < report.errors.size(); ++e) {
-    const MeanAndStd& figure = step->robustness[e].per_model;
+    const MeanAndStd<>& figure = step->robustness[e].per_model;
     const auto above = [&](const char* what, double value, const std::optional<double>& limit) {
       if (!limit || value <= *limit) return;
       console.note(std::string(what) + " of " + report.errors[e] + " is " + fixed_text(value, 2) +

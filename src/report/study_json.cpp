@@ -7,9 +7,9 @@
 namespace thermfit::cli {
 namespace {
 
-Json figure(const MeanAndStd& value) { return {{"S_mean_um", value.S_mean}, {"S_std_um", value.S_std}}; }
+Json figure(const MeanAndStd<>& value) { return {{"S_mean_um", value.S_mean}, {"S_std_um", value.S_std}}; }
 
-Json model(const StudyReport& r, const BatchModel& m, std::size_t batch) {
+Json model(const StudyReport& r, const BatchModel<>& m, std::size_t batch) {
   Json points = Json::array();
   for (const Index point : m.points) points.push_back(r.temperatures[static_cast<std::size_t>(point)]);
   return {{"batch", r.batches[batch]},
@@ -20,7 +20,7 @@ Json model(const StudyReport& r, const BatchModel& m, std::size_t batch) {
           {"condition_number", m.fit.condition_number}};
 }
 
-Json robustness_json(const StudyReport& r, const Robustness& robust) {
+Json robustness_json(const StudyReport& r, const Robustness<>& robust) {
   Json models = Json::array();
   for (std::size_t b = 0; b < robust.models.size(); ++b) {
     Json one = figure(robust.models[b]);
@@ -36,7 +36,7 @@ Json robustness_json(const StudyReport& r, const Robustness& robust) {
           {"models", std::move(models)}};
 }
 
-Json step_json(const StudyReport& r, const SweepStep& step, bool whole) {
+Json step_json(const StudyReport& r, const SweepStep<>& step, bool whole) {
   Json errors = Json::object();
   for (std::size_t e = 0; e < r.errors.size(); ++e) {
     errors[r.errors[e]] = robustness_json(r, step.robustness[e]);
@@ -49,7 +49,7 @@ Json step_json(const StudyReport& r, const SweepStep& step, bool whole) {
   return result;
 }
 
-Json left_out_json(const StudyReport& r, const LeftOutMethod& row) {
+Json left_out_json(const StudyReport& r, const LeftOutMethod<>& row) {
   Json result{{"method", name(row.method)}, {"components", row.components}};
   if (!row.result) {
     result["refusal"] = with_flags(row.refusal);
@@ -59,7 +59,7 @@ Json left_out_json(const StudyReport& r, const LeftOutMethod& row) {
   for (std::size_t e = 0; e < r.errors.size(); ++e) {
     Json rmse = Json::object();
     for (std::size_t b = 0; b < r.batches.size(); ++b) rmse[r.batches[b]] = row.result->residuals[b][e].rmse();
-    errors[r.errors[e]] = {{"mean_rmse_um", row.result->mean(e, &Residuals::rmse)},
+    errors[r.errors[e]] = {{"mean_rmse_um", row.result->mean(e, &Residuals<>::rmse)},
                            {"pooled_rmse_um", row.result->pooled(e).rmse()},
                            {"rmse_um", std::move(rmse)}};
   }
@@ -83,7 +83,7 @@ std::string study_json(const StudyReport& r) {
     document["batches"].push_back(
         {{"name", r.batches[b]}, {"rows", r.rows[b]}, {"correlations", to_json(r.study.correlations[b])}});
   document["methods"] = Json::array();
-  for (const StudiedMethod& method : r.study.methods) {
+  for (const StudiedMethod<>& method : r.study.methods) {
     Json one{{"method", name(method.method)}, {"selection", name(method.selection)}, {"components", method.components}};
     if (!method.refusal.empty()) one["refusal"] = with_flags(method.refusal);
     if (method.chosen()) one["chosen"] = step_json(r, *method.chosen(), true);
@@ -93,7 +93,7 @@ std::string study_json(const StudyReport& r) {
     document["methods"].push_back(std::move(one));
   }
   document["left_out"] = Json::array();
-  for (const LeftOutMethod& row : r.study.left_out) document["left_out"].push_back(left_out_json(r, row));
+  for (const LeftOutMethod<>& row : r.study.left_out) document["left_out"].push_back(left_out_json(r, row));
   if (r.card && !r.card->published.empty()) {
     document["published"] = {{"source", r.card->published_source}, {"figures", Json::array()}};
     for (const PublishedFigure& f : r.card->published)

@@ -35,8 +35,8 @@ class ErrorSection {
   void print() const {
     summary();
     correlations();
-    const StudiedMethod& first = r_.study.methods.front();
-    if (const SweepStep* step = first.chosen()) {
+    const StudiedMethod<>& first = r_.study.methods.front();
+    if (const SweepStep<>* step = first.chosen()) {
       models(first, *step);
       matrix(first, *step);
     }
@@ -48,14 +48,14 @@ class ErrorSection {
  private:
   void heading(const std::string& text) const { console_.print("\n" + wrap(console_.strong(text), 80, 2) + "\n"); }
 
-  const Robustness* figures(const StudiedMethod& method) const {
-    const SweepStep* step = method.chosen();
+  const Robustness<>* figures(const StudiedMethod<>& method) const {
+    const SweepStep<>* step = method.chosen();
     return step ? &step->robustness[e_] : nullptr;
   }
 
   /// The paper's baseline: MLR on FCGR points.
-  const StudiedMethod* baseline() const {
-    for (const StudiedMethod& method : r_.study.methods)
+  const StudiedMethod<>* baseline() const {
+    for (const StudiedMethod<>& method : r_.study.methods)
       if (method.method == Method::mlr && method.selection == Selection::fcgr) return &method;
     return nullptr;
   }
@@ -68,14 +68,14 @@ class ErrorSection {
   }
 
   void summary() const {
-    const Robustness* ours = figures(r_.study.methods.front());
+    const Robustness<>* ours = figures(r_.study.methods.front());
     if (!ours) return;
     std::string text = method_title(r_.study.methods.front()) + ", " + std::to_string(r_.study.options.points) +
                        " points: S_mean " + fixed_text(ours->per_model.S_mean, 2) + " um, S_std " +
                        fixed_text(ours->per_model.S_std, 2) + " um for " + error_ +
                        (r_.study.options.own_batch ? " over all batches" : " on batches a model was not made from");
-    if (const StudiedMethod* base = baseline())
-      if (const Robustness* theirs = figures(*base)) {
+    if (const StudiedMethod<>* base = baseline())
+      if (const Robustness<>* theirs = figures(*base)) {
         const double accuracy = 1 - ours->per_model.S_mean / theirs->per_model.S_mean;
         const double robust = 1 - ours->per_model.S_std / theirs->per_model.S_std;
         text += ": " + percent(std::abs(accuracy)) + (accuracy < 0 ? " less" : " more") + " accurate and " +
@@ -86,7 +86,7 @@ class ErrorSection {
   }
 
   void correlations() const {
-    const StudiedMethod& first = r_.study.methods.front();
+    const StudiedMethod<>& first = r_.study.methods.front();
     heading("Correlation with " + error_ + ", and the " + std::to_string(r_.study.options.points) +
             " points chosen in each batch");
     std::vector<std::string> header{"batch"};
@@ -104,7 +104,7 @@ class ErrorSection {
     console_.print(table.text());
   }
 
-  void models(const StudiedMethod& method, const SweepStep& step) const {
+  void models(const StudiedMethod<>& method, const SweepStep<>& step) const {
     heading("Coefficients of each batch's " + upper_name(method.method) +
             " model, um and um/K, and the points FCGR chooses");
     const std::size_t k = static_cast<std::size_t>(step.points);
@@ -113,9 +113,9 @@ class ErrorSection {
     header.emplace_back("FCGR");
     Table table(header);
     table.left(header.size() - 1);
-    const StudiedMethod* base = baseline();
+    const StudiedMethod<>* base = baseline();
     for (std::size_t b = 0; b < step.models.size(); ++b) {
-      const BatchModel& m = step.models[b];
+      const BatchModel<>& m = step.models[b];
       const Index batch = static_cast<Index>(b), error = static_cast<Index>(e_);
       const Vector& explained = m.fit.latent.explained_temperature_variance;
       std::vector<std::string> row{r_.batches[b], std::to_string(m.fit.components),
@@ -132,10 +132,10 @@ class ErrorSection {
     console_.print(table.text());
   }
 
-  void matrix(const StudiedMethod& method, const SweepStep& step) const {
+  void matrix(const StudiedMethod<>& method, const SweepStep<>& step) const {
     heading("S of each batch's " + upper_name(method.method) + " model (row) on each batch (column), um");
     const Matrix& S = step.S[e_];
-    const Robustness& robust = step.robustness[e_];
+    const Robustness<>& robust = step.robustness[e_];
     std::vector<std::string> header{"model"};
     header.insert(header.end(), r_.batches.begin(), r_.batches.end());
     Table table(header);
@@ -152,7 +152,7 @@ class ErrorSection {
       Index worst = i == 0 ? 1 : 0;
       for (Index j = 0; j < S.cols(); ++j)
         if ((j != i || r_.study.options.own_batch) && S(i, j) > S(i, worst)) worst = j;
-      const MeanAndStd& figure = robust.models[static_cast<std::size_t>(i)];
+      const MeanAndStd<>& figure = robust.models[static_cast<std::size_t>(i)];
       summary.add({r_.batches[static_cast<std::size_t>(i)], fixed_text(figure.S_mean, 2), fixed_text(figure.S_std, 2),
                    fixed_text(S(i, worst), 2), r_.batches[static_cast<std::size_t>(worst)]});
     }
@@ -166,25 +166,25 @@ class ErrorSection {
   void sweep() const {
     heading("Number of temperature points: S_mean/S_std per model, um");
     std::vector<std::string> header{"points"};
-    for (const StudiedMethod& method : r_.study.methods)
+    for (const StudiedMethod<>& method : r_.study.methods)
       header.push_back(upper_name(method.method) + (method.components > 0 ? ", 1 c." : "") +
                        (method.selection == Selection::fcgr ? ", FCGR" : ""));
     Table table(header);
     for (std::size_t k = 0; k < r_.study.methods.front().sweep.size(); ++k) {
       std::vector<std::string> row{std::to_string(k + 1)};
-      for (const StudiedMethod& method : r_.study.methods) {
+      for (const StudiedMethod<>& method : r_.study.methods) {
         if (!method.sweep[k]) {
           row.emplace_back("-");
           continue;
         }
-        const MeanAndStd& figure = method.sweep[k]->robustness[e_].per_model;
+        const MeanAndStd<>& figure = method.sweep[k]->robustness[e_].per_model;
         row.push_back(fixed_text(figure.S_mean, 2) + '/' + fixed_text(figure.S_std, 2));
       }
       table.add(row);
     }
     console_.print(table.text());
     std::vector<std::string> told;
-    for (const StudiedMethod& method : r_.study.methods)
+    for (const StudiedMethod<>& method : r_.study.methods)
       if (!method.refusal.empty() && std::find(told.begin(), told.end(), method.refusal) == told.end()) {
         told.push_back(method.refusal);
         console_.print(wrap("-  " + method_title(method) + ": " + with_flags(method.refusal), 80, 3));
@@ -195,16 +195,16 @@ class ErrorSection {
     heading("Methods side by side at " + std::to_string(r_.study.options.points) +
             " points, um; percentages against MLR on FCGR; pooled: S_std over all pairs");
     Table table({"method", "S_mean", "S_std", "pooled", "worst S of, on"});
-    const StudiedMethod* base = baseline();
-    const Robustness* reference = base ? figures(*base) : nullptr;
+    const StudiedMethod<>* base = baseline();
+    const Robustness<>* reference = base ? figures(*base) : nullptr;
     const auto compared = [](double value, std::optional<double> against) {
       if (!against) return fixed_text(value, 2) + "          ";
       const double change = 100 * (value / *against - 1);
       std::string share = (change < 0 ? "" : "+") + fixed_text(change, 1) + " %)";
       return fixed_text(value, 2) + std::string(9 - std::min<std::size_t>(8, share.size()), ' ') + '(' + share;
     };
-    for (const StudiedMethod& method : r_.study.methods) {
-      const Robustness* f = figures(method);
+    for (const StudiedMethod<>& method : r_.study.methods) {
+      const Robustness<>* f = figures(method);
       if (!f) {
         table.add({method_title(method), "-"});
         continue;
@@ -237,7 +237,7 @@ class ErrorSection {
     heading("Each batch left out and predicted by one model of all the others, all " + std::to_string(r_.study.points) +
             " points: RMSE over batches, um");
     Table table({"method", "mean", "worst", "batch", "pooled", "bias off"});
-    for (const LeftOutMethod& row : r_.study.left_out) {
+    for (const LeftOutMethod<>& row : r_.study.left_out) {
       std::string title = upper_name(row.method);
       if (row.components > 0)
         title += ", " + std::to_string(row.components) + (row.components > 1 ? " components" : " component");
@@ -246,11 +246,11 @@ class ErrorSection {
         console_.print(wrap("-  " + title + ": " + with_flags(row.refusal), 80, 3));
         continue;
       }
-      const std::size_t worst = row.result->worst(e_, &Residuals::rmse);
-      table.add({title, fixed_text(row.result->mean(e_, &Residuals::rmse), 2),
+      const std::size_t worst = row.result->worst(e_, &Residuals<>::rmse);
+      table.add({title, fixed_text(row.result->mean(e_, &Residuals<>::rmse), 2),
                  fixed_text(row.result->residuals[worst][e_].rmse(), 2), r_.batches[worst],
                  fixed_text(row.result->pooled(e_).rmse(), 2),
-                 fixed_text(row.result->mean(e_, &Residuals::rmse_without_bias), 2)});
+                 fixed_text(row.result->mean(e_, &Residuals<>::rmse_without_bias), 2)});
     }
     console_.print(table.text());
   }
@@ -263,7 +263,7 @@ class ErrorSection {
 
 }  // namespace
 
-std::string method_title(const StudiedMethod& method) {
+std::string method_title(const StudiedMethod<>& method) {
   return upper_name(method.method) + (method.components > 0 ? ", 1 component" : "") +
          (method.selection == Selection::fcgr ? " on FCGR"
           : method.components > 0             ? ""

@@ -16,7 +16,7 @@ namespace thermfit::cli {
 
 /// A study together with what its tables name.
 struct StudyReport {
-  Study study;
+  Study<> study;
   TemperatureReference reference = TemperatureReference::rise;
   std::vector<std::string> temperatures, errors, batches;
   std::vector<Index> rows;           ///< per batch
@@ -27,6 +27,6 @@ struct StudyReport {
 void print_study(const StudyReport& report, Console& console);
 
 /// "PLS on correlation", "MLR on FCGR".
-std::string method_title(const StudiedMethod& method);
+std::string method_title(const StudiedMethod<>& method);
 
 }  // namespace thermfit::cli

@@ -24,8 +24,8 @@ TEST_CASE("every method gives the same model from moments and from rows", "[fit]
         FitOptions options = with_lambda(.01);
         options.scaling = scaling;
         options.components = ComponentRule::fixed(3);
-        const LinearFit a = fit(method, moments, options);
-        const LinearFit b = fit(method, data.temperatures, data.errors, options);
+        const LinearFit<> a = fit(method, moments, options);
+        const LinearFit<> b = fit(method, data.temperatures, data.errors, options);
         CAPTURE(name(method), responses, static_cast<int>(scaling));
         CHECK(relative(a.model.coefficients, b.model.coefficients) < 1e-9);
         CHECK(relative(a.model.intercept, b.model.intercept) < 1e-9);
@@ -42,7 +42,7 @@ TEST_CASE("every method gives the same model from moments and from rows", "[fit]
 
 TEST_CASE("least squares leaves residuals at right angles to the temperatures", "[fit]") {
   const ThermalRows data(100, 5, 2, 2);
-  for (const LinearFit& fit :
+  for (const LinearFit<>& fit :
        {fit_mlr(data.temperatures, data.errors), fit_mlr(Moments(data.temperatures, data.errors))}) {
     const Matrix residual = data.errors - fit.model.predict_rows(data.temperatures);
     CHECK((data.temperatures.transpose() * residual).cwiseAbs().maxCoeff() < 1e-7);
@@ -55,8 +55,8 @@ TEST_CASE("least squares on dependent points has the lowest rank and the smalles
   const ThermalRows data(60, 2, 1, 3, 1);
   Matrix t(60, 4);
   t << data.temperatures, data.temperatures.col(0), Matrix::Constant(60, 1, 22.4);
-  const LinearFit alone = fit_mlr(data.temperatures, data.errors);
-  for (const LinearFit& fit : {fit_mlr(t, data.errors), fit_mlr(Moments(t, data.errors))}) {
+  const LinearFit<> alone = fit_mlr(data.temperatures, data.errors);
+  for (const LinearFit<>& fit : {fit_mlr(t, data.errors), fit_mlr(Moments(t, data.errors))}) {
     CHECK(fit.rank == 2);
     CHECK(fit.degrees_of_freedom == 57);
     CHECK(fit.model.coefficients(0) == Approx(alone.model.coefficients(0) / 2));  // shared by the twins
@@ -82,12 +82,12 @@ TEST_CASE("the condition number is that of the standardised temperatures", "[fit
 TEST_CASE("PCR and ridge end in least squares, and ridge in the mean", "[fit]") {
   const ThermalRows data(150, 5, 2, 4, .5);
   const Moments moments(data.temperatures, data.errors);
-  const LinearFit mlr = fit_mlr(moments);
+  const LinearFit<> mlr = fit_mlr(moments);
   FitOptions all;
   all.components = ComponentRule::fixed(5);
   CHECK(relative(fit_pcr(moments, all).model.coefficients, mlr.model.coefficients) < 1e-9);
   CHECK(relative(fit_ridge(moments, with_lambda(0)).model.coefficients, mlr.model.coefficients) < 1e-9);
-  const LinearFit flat = fit_ridge(moments, with_lambda(1e12));
+  const LinearFit<> flat = fit_ridge(moments, with_lambda(1e12));
   CHECK(flat.model.coefficients.norm() < 1e-9 * mlr.model.coefficients.norm());
   CHECK((flat.model.intercept - moments.error_mean()).norm() < 1e-6);
   CHECK(flat.degrees_of_freedom == Approx(149));
@@ -96,7 +96,7 @@ TEST_CASE("PCR and ridge end in least squares, and ridge in the mean", "[fit]") 
 TEST_CASE("ridge solves its penalised normal equations", "[fit]") {
   const ThermalRows data(80, 6, 1, 5);
   const double lambda = .03;
-  const LinearFit fit = fit_ridge(data.temperatures, data.errors, with_lambda(lambda));
+  const LinearFit<> fit = fit_ridge(data.temperatures, data.errors, with_lambda(lambda));
   const Matrix z = fit.channels.apply(data.temperatures);
   const Matrix y = (data.errors.array() - fit.channels.error_mean(0)) / fit.channels.error_scale(0);
   const Matrix gradient =
@@ -111,7 +111,7 @@ TEST_CASE("ridge solves its penalised normal equations", "[fit]") {
 }
 
 TEST_CASE("the penalty chosen by leaving batches out is the best of the grid", "[fit]") {
-  std::vector<Moments> batches;
+  std::vector<Moments<>> batches;
   for (unsigned b = 0; b < 5; ++b) {
     const ThermalRows data(12, 8, 1, 40 + b, 1.5);
     batches.emplace_back(data.temperatures, data.errors);
@@ -121,7 +121,7 @@ TEST_CASE("the penalty chosen by leaving batches out is the best of the grid", "
   for (const double lambda : ridge_grid()) {
     double square = 0;
     for (std::size_t i = 0; i < 5; ++i) {
-      std::vector<Moments> rest = batches;
+      std::vector<Moments<>> rest = batches;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
       square += residuals(fit_ridge(merged(rest), with_lambda(lambda)).model, batches[i])[0].sum_of_squares();
     }

@@ -42,7 +42,7 @@ TEST_CASE("the worked example of the paper, eq. (11), comes out to its printed d
   deviation << 12.46 / (1.773 / .46531), 12.46 / (1.811 / .47327), 12.46;
   mean << .5, .6, 6.258 + 1.773 * .5 + 1.811 * .6;
   const Matrix all = rows_with(correlation, mean, deviation);
-  for (const LinearFit& fit :
+  for (const LinearFit<>& fit :
        {fit_pls(all.leftCols(2), all.rightCols(1)), fit_pls(Moments(all.leftCols(2), all.rightCols(1)))}) {
     CHECK(fit.components == 1);  // the paper's own rule
     CHECK(fixed_text(fit.latent.weights(0, 0), 3) == "0.701");
@@ -61,7 +61,7 @@ TEST_CASE("PLS with all components equals least squares, for one error and for s
   for (const Index responses : {1, 3}) {
     const ThermalRows data(200, 6, responses, 1);
     const Moments moments(data.temperatures, data.errors);
-    const LinearFit mlr = fit_mlr(data.temperatures, data.errors);
+    const LinearFit<> mlr = fit_mlr(data.temperatures, data.errors);
     for (const Scaling scaling : {Scaling::centre, Scaling::temperatures, Scaling::both}) {
       CHECK(relative(fit_pls(data.temperatures, data.errors, fixed(6, scaling)).model.coefficients,
                      mlr.model.coefficients) < 1e-10);
@@ -72,7 +72,7 @@ TEST_CASE("PLS with all components equals least squares, for one error and for s
 
 TEST_CASE("weights are orthonormal, scores uncorrelated, and rotations give the scores", "[fit]") {
   const ThermalRows data(100, 7, 2, 2, 1);
-  const LinearFit fit = fit_pls(data.temperatures, data.errors, fixed(5));
+  const LinearFit<> fit = fit_pls(data.temperatures, data.errors, fixed(5));
   REQUIRE(fit.components == 5);
   CHECK(relative(fit.latent.weights.transpose() * fit.latent.weights, Matrix::Identity(5, 5)) < 1e-12);
   const Matrix t = scores(fit, data.temperatures);
@@ -88,7 +88,7 @@ TEST_CASE("weights are orthonormal, scores uncorrelated, and rotations give the 
 
 TEST_CASE("explained variance is cumulative and is that of the residuals; squared VIP averages to one", "[fit]") {
   const ThermalRows data(100, 7, 2, 3, 1);
-  const LinearFit fit = fit_pls(data.temperatures, data.errors, fixed(4));
+  const LinearFit<> fit = fit_pls(data.temperatures, data.errors, fixed(4));
   const Matrix z = fit.channels.apply(data.temperatures);
   const Matrix left = z - scores(fit, data.temperatures) * fit.latent.loadings.transpose();
   CHECK(fit.latent.explained_temperature_variance(3) == Approx(1 - left.squaredNorm() / z.squaredNorm()));
@@ -107,8 +107,8 @@ TEST_CASE("the paper's rule stops past 90 % and below a gain of 5 %", "[fit]") {
   // One component is the whole of least squares on independent points; there is no covariance left for a second.
   CHECK(fit_pls(independent.leftCols(3), independent.rightCols(1)).components == 1);
   const ThermalRows data(300, 8, 1, 4, 2);
-  const LinearFit all = fit_pls(data.temperatures, data.errors, fixed(8));
-  const LinearFit paper = fit_pls(data.temperatures, data.errors);
+  const LinearFit<> all = fit_pls(data.temperatures, data.errors, fixed(8));
+  const LinearFit<> paper = fit_pls(data.temperatures, data.errors);
   const Vector& explained = all.latent.explained_temperature_variance;
   const Index a = paper.components;
   REQUIRE(a >= 1);
@@ -125,9 +125,9 @@ TEST_CASE("duplicated, constant and dependent points stop the components at the 
   Matrix redundant(80, 8);
   redundant << data.temperatures, data.temperatures, Matrix::Constant(80, 1, 20.7),
       data.temperatures.col(0) + data.temperatures.col(1);
-  const LinearFit alone = fit_mlr(data.temperatures, data.errors);
+  const LinearFit<> alone = fit_mlr(data.temperatures, data.errors);
   const Moments moments(redundant, data.errors);
-  for (const LinearFit& fit : {fit_pls(redundant, data.errors, fixed(8)), fit_pls(moments, fixed(8))}) {
+  for (const LinearFit<>& fit : {fit_pls(redundant, data.errors, fixed(8)), fit_pls(moments, fixed(8))}) {
     CHECK(fit.components == 3);
     CHECK(fit.rank == 3);
     CHECK(fit.model.coefficients.cwiseAbs().maxCoeff() < 100);
@@ -141,10 +141,10 @@ TEST_CASE("near duplicates give no huge coefficients from moments, and are resol
   const ThermalRows noise(80, 3, 1, 7, 1);
   Matrix close(80, 6);
   close << data.temperatures, data.temperatures + 1e-9 * (noise.temperatures.array() - 20).matrix();
-  const LinearFit moments = fit_pls(Moments(close, data.errors), fixed(6));
+  const LinearFit<> moments = fit_pls(Moments(close, data.errors), fixed(6));
   CHECK(moments.components == 3);
   CHECK(moments.model.coefficients.cwiseAbs().maxCoeff() < 100);
-  const LinearFit rows = fit_pls(close, data.errors, fixed(6));
+  const LinearFit<> rows = fit_pls(close, data.errors, fixed(6));
   CHECK(rows.components == 6);
   CHECK(rows.condition_number > 1e8);
   CHECK(rows.residual_deviation_um(0) < moments.residual_deviation_um(0));
@@ -165,12 +165,12 @@ TEST_CASE("a condition moments cannot resolve is refused and points to rows", "[
 
 TEST_CASE("nothing to explain gives the mean and no component", "[fit]") {
   const ThermalRows data(30, 3, 1, 8);
-  const LinearFit flat = fit_pls(data.temperatures, Matrix::Constant(30, 1, 4.5), fixed(2));
+  const LinearFit<> flat = fit_pls(data.temperatures, Matrix::Constant(30, 1, 4.5), fixed(2));
   CHECK(flat.components == 0);
   CHECK(flat.model.coefficients.norm() == 0);
   CHECK(flat.model.intercept(0) == Approx(4.5));
   CHECK(flat.residual_deviation_um(0) < 1e-12);
-  const LinearFit still = fit_pls(Moments(Matrix::Constant(30, 3, 20.1), data.errors), fixed(2));
+  const LinearFit<> still = fit_pls(Moments(Matrix::Constant(30, 3, 20.1), data.errors), fixed(2));
   CHECK(still.components == 0);
   CHECK(still.rank == 0);
   CHECK(still.model.intercept(0) == Approx(data.errors.mean()));
@@ -186,7 +186,7 @@ TEST_CASE("wrong input to a fit is an Error", "[fit]") {
   FitOptions options;
   options.components = ComponentRule::leave_one_batch_out();
   CHECK_THROWS_AS(fit_pls(moments, options), Error);
-  CHECK_THROWS_AS(fit_pls(std::vector<Moments>{moments}, options), Error);
+  CHECK_THROWS_AS(fit_pls(std::vector<Moments<>>{moments}, options), Error);
   Matrix holes = data.temperatures;
   holes(17, 1) = std::nan("");
   CHECK_THROWS_WITH(fit_pls(holes, data.errors), Catch::Contains("row 17, temperature 1"));
@@ -194,7 +194,7 @@ TEST_CASE("wrong input to a fit is an Error", "[fit]") {
 }
 
 TEST_CASE("leaving one batch out chooses the components that predict unseen batches best", "[fit]") {
-  std::vector<Moments> batches;
+  std::vector<Moments<>> batches;
   for (unsigned b = 0; b < 6; ++b) {
     const ThermalRows data(40, 8, 1, 20 + b, .5);
     batches.emplace_back(data.temperatures, data.errors);
@@ -204,7 +204,7 @@ TEST_CASE("leaving one batch out chooses the components that predict unseen batc
   const Index chosen = fit_pls(batches, options).components;
   Vector square = Vector::Zero(8);
   for (std::size_t i = 0; i < 6; ++i) {
-    std::vector<Moments> rest = batches;
+    std::vector<Moments<>> rest = batches;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
     for (Index a = 1; a <= 8; ++a) {
       square(a - 1) += residuals(fit_pls(merged(rest), fixed(a)).model, batches[i])[0].sum_of_squares();

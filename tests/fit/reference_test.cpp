@@ -23,7 +23,7 @@ const std::vector<DataSet> data_sets{{"yarn", "NIR1", "NIR268", "density", "dens
 
 struct Reference {
   Matrix x, y;
-  Moments moments;
+  Moments<> moments;
   Reference(const std::string& folder, const DataSet& set) {
     const NumericCsv csv(folder + "/pls_reference/" + set.name + ".csv");
     x = csv.columns(set.first_x, set.last_x);
@@ -108,15 +108,15 @@ TEST_CASE("PLS agrees with R kernelpls and oscorespls: coefficients and every la
         if (method == "simpls" && a > 3) continue;  // loses digits itself: 1e-8 at four components, 1.8e-3 at ten
         CAPTURE(a);
         const FitOptions how = options(scaling, a);
-        const LinearFit rows = pcr ? fit_pcr(data.x, data.y, how) : fit_pls(data.x, data.y, how);
-        const LinearFit mom = pcr ? fit_pcr(data.moments, how) : fit_pls(data.moments, how);
+        const LinearFit<> rows = pcr ? fit_pcr(data.x, data.y, how) : fit_pls(data.x, data.y, how);
+        const LinearFit<> mom = pcr ? fit_pcr(data.moments, how) : fit_pls(data.moments, how);
         REQUIRE(rows.components == a);
         CHECK(difference(rows.model.coefficients, matrix(c.at("B"))) < 1e-9);
         CHECK(difference(mom.model.coefficients, matrix(c.at("B"))) < 1e-9);
         CHECK(difference(rows.model.intercept.transpose(), matrix(c.at("intercept")).transpose()) < 1e-9);
       }
       const FitOptions how = options(scaling, most);
-      const LinearFit fit = pcr ? fit_pcr(data.x, data.y, how) : fit_pls(data.x, data.y, how);
+      const LinearFit<> fit = pcr ? fit_pcr(data.x, data.y, how) : fit_pls(data.x, data.y, how);
       const Matrix explained = fit.latent.explained_temperature_variance;
       double cumulative = 0;
       for (Index a = 0; a < most; ++a) {
@@ -177,7 +177,7 @@ TEST_CASE("squared errors on left-out segments agree with R's cross-validation",
         const auto name = cv.at("name").get<std::string>();
         if (data.x.cols() > 100 && name == "LOO") continue;
         CAPTURE(set.name, method, name);
-        std::vector<Moments> batches;
+        std::vector<Moments<>> batches;
         const json& segments = reference.at("cv_segments").at(name);
         for (const json& segment : segments) {
           Moments batch(data.x.cols(), data.y.cols());
@@ -194,7 +194,7 @@ TEST_CASE("squared errors on left-out segments agree with R's cross-validation",
         }
         const Matrix press = matrix(cv.at("PRESS"));
         FitOptions how = options(Scaling::centre, press.cols());
-        const std::vector<Moments> others = leave_one_out(batches);
+        const std::vector<Moments<>> others = leave_one_out(batches);
         Matrix ours = Matrix::Zero(press.rows(), press.cols());
         for (std::size_t i = 0; i < batches.size(); ++i) {
           const auto path = method == "svdpc" ? pcr_path(others[i], how) : pls_path(others[i], how);
@@ -218,10 +218,10 @@ TEST_CASE("jackknife over single rows agrees with R jack.test", "[fit]") {
     if (set.name == "gasoline" || set.name == "yarn") continue;  // hundreds of columns: the time of a suite
     const Reference data(folder, set);
     const json reference = reference_of(folder, set, "R").at("jackknife");
-    std::vector<Moments> batches;
+    std::vector<Moments<>> batches;
     for (Index r = 0; r < data.x.rows(); ++r) batches.emplace_back(data.x.row(r), data.y.row(r));
     const FitOptions how = options(Scaling::centre, reference.at("ncomp").get<Index>());
-    const CoefficientSpread spread = jackknife(batches, [&](const Moments& m) { return fit_pls(m, how); });
+    const CoefficientSpread<> spread = jackknife(batches, [&](const Moments<>& m) { return fit_pls(m, how); });
     CAPTURE(set.name);
     CHECK(difference(spread.model.coefficients, matrix(reference.at("coef"))) < 1e-9);
     CHECK(difference(spread.deviation, matrix(reference.at("sd"))) < 1e-9);
@@ -235,7 +235,7 @@ TEST_CASE("least squares agrees with R lm: coefficients, sigma and degrees of fr
   const Reference data(folder, data_sets.back());
   const json reference = reference_of(folder, data_sets.back(), "lm_R");
   const Matrix coefficients = matrix(reference.at("coef"));
-  for (const LinearFit& fit : {fit_mlr(data.x, data.y), fit_mlr(Moments(data.x, data.y))}) {
+  for (const LinearFit<>& fit : {fit_mlr(data.x, data.y), fit_mlr(Moments(data.x, data.y))}) {
     CHECK(difference(fit.model.coefficients, coefficients.bottomRows(10)) < 1e-10);
     CHECK(fit.model.intercept(0) == Approx(coefficients(0, 0)).epsilon(1e-10));
     CHECK(fit.rank == 10);
@@ -251,7 +251,7 @@ TEST_CASE("least squares reaches the certified values of Longley's data", "[fit]
   Matrix certified(6, 1);  // NIST StRD, in the units of this file
   certified << 15.0618722713733e-3, -0.0358191792925910, -2.02022980381683e-2, -1.03322686717359e-2,
       -0.0511041056535807, 1829.15146461355e-3;
-  for (const LinearFit& fit : {fit_mlr(data.x, data.y), fit_mlr(Moments(data.x, data.y))}) {
+  for (const LinearFit<>& fit : {fit_mlr(data.x, data.y), fit_mlr(Moments(data.x, data.y))}) {
     for (Index i = 0; i < 6; ++i) {
       CAPTURE(i, fit.model.coefficients(i), certified(i));
       CHECK(std::abs(fit.model.coefficients(i) / certified(i) - 1) < 1e-10);

@@ -101,7 +101,7 @@ TEST_CASE("a substitute does without its sensor and is the fit on the others", "
       if (p != lost) others.push_back(p);
     }
     const auto rows = merged(observe(batches));
-    const LinearFit direct = fit_mlr(rows.temperatures(Eigen::all, others), rows.errors);
+    const LinearFit<> direct = fit_mlr(rows.temperatures(Eigen::all, others), rows.errors);
     CHECK((substitute.model.coefficients(others, Eigen::all) - direct.model.coefficients).norm() <
           1e-9 * direct.model.coefficients.norm());
     CHECK((substitute.residual_deviation_um - direct.residual_deviation_um).norm() < 1e-9);

@@ -56,8 +56,8 @@ TEST_CASE("new observations pass the 1 % limits in .9 to 1.1 % of the cases", "[
        {Mixture{2, 1, 79, .3}, Mixture{10, 2, 158, .5}, Mixture{10, 2, 948, .5}, Mixture{22, 4, 300, .5}}) {
     FitOptions options;
     options.components = ComponentRule::fixed(setting.sources);
-    const AlarmRates pls = alarm_rates(setting, [&](const Moments& m) { return fit_pls(m, options); });
-    const AlarmRates pcr = alarm_rates(setting, [&](const Moments& m) { return fit_pcr(m, options); });
+    const AlarmRates pls = alarm_rates(setting, [&](const Moments<>& m) { return fit_pls(m, options); });
+    const AlarmRates pcr = alarm_rates(setting, [&](const Moments<>& m) { return fit_pcr(m, options); });
     CAPTURE(setting.points, setting.rows, pls.t2, pls.spe, pcr.t2, pcr.spe);
     for (const double rate : {pls.t2, pls.spe, pcr.t2, pcr.spe}) {
       CHECK(rate > .009);
@@ -67,7 +67,7 @@ TEST_CASE("new observations pass the 1 % limits in .9 to 1.1 % of the cases", "[
 }
 
 TEST_CASE("T2 over all directions, as for least squares, keeps its rate on few rows", "[fit]") {
-  const AlarmRates mlr = alarm_rates({3, 2, 25, .5}, [](const Moments& m) { return fit_mlr(m); });
+  const AlarmRates mlr = alarm_rates({3, 2, 25, .5}, [](const Moments<>& m) { return fit_mlr(m); });
   CAPTURE(mlr.t2);
   CHECK(mlr.t2 > .009);
   CHECK(mlr.t2 < .011);
@@ -77,7 +77,7 @@ TEST_CASE("T2 over all directions, as for least squares, keeps its rate on few r
 TEST_CASE("on 79 rows of ten points the rates stay between .8 and 1.2 %", "[fit]") {
   FitOptions options;
   options.components = ComponentRule::fixed(2);
-  const AlarmRates pls = alarm_rates({10, 2, 79, .5}, [&](const Moments& m) { return fit_pls(m, options); });
+  const AlarmRates pls = alarm_rates({10, 2, 79, .5}, [&](const Moments<>& m) { return fit_pls(m, options); });
   CAPTURE(pls.t2, pls.spe);
   CHECK(pls.t2 > .008);
   CHECK(pls.t2 < .012);

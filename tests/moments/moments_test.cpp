@@ -28,7 +28,7 @@ Rows random_rows(Index rows, Index points, Index responses, unsigned seed) {
 }
 
 /// Relative to the diagonal, as a correlation would see it.
-double difference(const Moments& a, const Moments& b) {
+double difference(const Moments<>& a, const Moments<>& b) {
   REQUIRE(a.rows() == b.rows());
   const Vector x = a.temperature_products().diagonal().cwiseSqrt();
   const Vector y = a.error_products().diagonal().cwiseSqrt();
@@ -73,7 +73,7 @@ TEST_CASE("any split into batches, merged in any order, gives the same moments t
     const int pieces = static_cast<int>(generator() % 60);
     for (int i = 0; i < pieces; ++i) cuts.push_back(static_cast<Index>(generator() % 5001));
     std::sort(cuts.begin(), cuts.end());
-    std::vector<Moments> parts;
+    std::vector<Moments<>> parts;
     for (std::size_t i = 1; i < cuts.size(); ++i) {
       const Index count = cuts[i] - cuts[i - 1];
       parts.emplace_back(data.temperatures.middleRows(cuts[i - 1], count), data.errors.middleRows(cuts[i - 1], count));
@@ -98,14 +98,14 @@ TEST_CASE("rows one at a time give the moments of all at once", "[moments]") {
 }
 
 TEST_CASE("leaving one batch out equals adding up the others, ranges included", "[moments]") {
-  std::vector<Moments> batches;
+  std::vector<Moments<>> batches;
   for (unsigned b = 0; b < 7; ++b) {
     const Rows data = random_rows(50 + 10 * static_cast<Index>(b), 3, 2, 10 + b);
     batches.emplace_back(data.temperatures, data.errors);
   }
-  const std::vector<Moments> others = leave_one_out(batches);
+  const std::vector<Moments<>> others = leave_one_out(batches);
   for (std::size_t i = 0; i < batches.size(); ++i) {
-    std::vector<Moments> rest = batches;
+    std::vector<Moments<>> rest = batches;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
     CHECK(difference(merged(rest), others[i]) < 1e-14);
     CHECK(merged(rest).temperature_lowest() == others[i].temperature_lowest());
@@ -172,7 +172,7 @@ TEST_CASE("different widths do not merge, empty moments merge with anything", "[
   moments.merge(Moments());
   moments.merge(Moments(2, 2));
   CHECK(moments.rows() == 10);
-  Moments empty;
+  Moments<> empty;
   empty.merge(moments);
   CHECK(difference(moments, empty) == 0);
 }

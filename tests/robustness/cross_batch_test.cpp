@@ -12,8 +12,8 @@ using namespace thermfit;
 
 namespace {
 
-std::vector<Observations> campaign(Index responses = 1, int count = 5) {
-  std::vector<Observations> batches;
+std::vector<Observations<>> campaign(Index responses = 1, int count = 5) {
+  std::vector<Observations<>> batches;
   for (int b = 0; b < count; ++b) {
     const ThermalRows rows(30 + 5 * b, 6, responses, static_cast<unsigned>(b), .4);
     Batch batch;
@@ -34,15 +34,15 @@ FitOptions fixed(Index components) {
 }  // namespace
 
 TEST_CASE("S between batches from moments equals S from rows", "[robustness]") {
-  const std::vector<Observations> batches = campaign(2);
-  const SweepStep step =
-      cross_batch(batches, ByCorrelation{}, 3, [](const Moments& m) { return fit_pls(m, fixed(2)); });
+  const std::vector<Observations<>> batches = campaign(2);
+  const SweepStep<> step =
+      cross_batch(batches, ByCorrelation{}, 3, [](const Moments<>& m) { return fit_pls(m, fixed(2)); });
   REQUIRE(step.S.size() == 2);
   for (Index m = 0; m < 5; ++m) {
-    const BatchModel& model = step.models[static_cast<std::size_t>(m)];
+    const BatchModel<>& model = step.models[static_cast<std::size_t>(m)];
     REQUIRE(model.points.size() == 3);
     for (Index b = 0; b < 5; ++b) {
-      const Observations& batch = batches[static_cast<std::size_t>(b)];
+      const Observations<>& batch = batches[static_cast<std::size_t>(b)];
       const Matrix error = model.fit.model.predict_rows(batch.temperatures(Eigen::all, model.points)) - batch.errors;
       for (Index e = 0; e < 2; ++e) {
         const double S = std::sqrt(error.col(e).squaredNorm() / static_cast<double>(error.rows() - 1));
@@ -56,7 +56,7 @@ TEST_CASE("S between batches from moments equals S from rows", "[robustness]") {
 
 TEST_CASE("the study of another implementation comes out, for every model batch and number of points", "[robustness]") {
   REQUIRE_SHARED_DATA(folder);
-  std::vector<Observations> batches;
+  std::vector<Observations<>> batches;
   for (int b = 1; b <= 12; ++b) {
     const NumericCsv csv(folder + "/pls_reference/study/batch_0" + (b < 10 ? "0" : "") + std::to_string(b) + ".csv");
     Batch batch;
@@ -70,14 +70,14 @@ TEST_CASE("the study of another implementation comes out, for every model batch 
         {"study_W1_nc2_scaled_sklearn", 2, Scaling::both}}) {
     FitOptions options = fixed(components);
     options.scaling = scaling;
-    const auto steps = sweep_points(batches, ByCorrelation{}, [&](const Moments& m) { return fit_pls(m, options); });
+    const auto steps = sweep_points(batches, ByCorrelation{}, [&](const Moments<>& m) { return fit_pls(m, options); });
     const NumericCsv reference(folder + "/pls_reference/study/" + file + ".csv");
     REQUIRE(reference.values.rows() == 120);
     double worst = 0;
     for (Index r = 0; r < 120; ++r) {
       const auto model = static_cast<std::size_t>(reference.values(r, 0)) - 1;
       const auto k = static_cast<std::size_t>(reference.values(r, 1)) - 1;
-      const MeanAndStd& ours = steps[k].robustness[0].models[model];
+      const MeanAndStd<>& ours = steps[k].robustness[0].models[model];
       // Their S_std divides by n - 1, over the eleven other batches.
       worst = std::max({worst, std::abs(ours.S_mean / reference.values(r, 2) - 1),
                         std::abs(ours.S_std * std::sqrt(11.0 / 10.0) / reference.values(r, 3) - 1)});
@@ -88,15 +88,15 @@ TEST_CASE("the study of another implementation comes out, for every model batch 
 }
 
 TEST_CASE("any callable is a fitter, and its error names the batch", "[robustness]") {
-  const std::vector<Observations> batches = campaign();
-  const auto mean_only = [](const Moments& m) {
+  const std::vector<Observations<>> batches = campaign();
+  const auto mean_only = [](const Moments<>& m) {
     return LinearModel<>{Matrix::Zero(m.temperatures(), m.errors()), m.error_mean()};
   };
   const auto steps = sweep_points(batches, ByCorrelation{}, mean_only, 2);
   CHECK(steps.size() == 2);
   CHECK(steps[0].S[0](0, 0) == Approx(std::sqrt(batches[0].moments.error_products()(0, 0) /
                                                 static_cast<double>(batches[0].moments.rows() - 1))));
-  const auto fails = [](const Moments& m) -> LinearFit {
+  const auto fails = [](const Moments<>& m) -> LinearFit<> {
     if (m.rows() == 40) throw Error("fit", "bad luck");
     return fit_mlr(m);
   };
@@ -105,18 +105,18 @@ TEST_CASE("any callable is a fitter, and its error names the batch", "[robustnes
 
 TEST_CASE("batches left out are predicted by the others alone, and every figure follows from the rows",
           "[robustness]") {
-  const std::vector<Observations> batches = campaign(1, 4);
-  const LeftOut left_out = leave_one_batch_out(moments_of(batches), [](const Moments& m) { return fit_mlr(m); });
-  Residuals pooled;
+  const std::vector<Observations<>> batches = campaign(1, 4);
+  const LeftOut<> left_out = leave_one_batch_out(moments_of(batches), [](const Moments<>& m) { return fit_mlr(m); });
+  Residuals<> pooled;
   double sum = 0, worst_rmse = 0;
   std::size_t worst = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    std::vector<Observations> rest = batches;
+    std::vector<Observations<>> rest = batches;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-    const Observations others = merged(rest);
-    const LinearFit fit = fit_mlr(others.temperatures, others.errors);
-    const Residuals rows = residuals(fit.model, batches[i].temperatures, batches[i].errors)[0];
-    const Residuals& ours = left_out.residuals[i][0];
+    const Observations<> others = merged(rest);
+    const LinearFit<> fit = fit_mlr(others.temperatures, others.errors);
+    const Residuals<> rows = residuals(fit.model, batches[i].temperatures, batches[i].errors)[0];
+    const Residuals<>& ours = left_out.residuals[i][0];
     CHECK(ours.rmse() == Approx(rows.rmse()).epsilon(1e-9));
     CHECK(ours.S() == Approx(rows.S()).epsilon(1e-9));
     CHECK(ours.rmse_without_bias() == Approx(rows.rmse_without_bias()).epsilon(1e-9));
@@ -128,21 +128,21 @@ TEST_CASE("batches left out are predicted by the others alone, and every figure 
     }
     pooled.add(rows);
   }
-  CHECK(left_out.mean(0, &Residuals::rmse) == Approx(sum / 4));
-  CHECK(left_out.worst(0, &Residuals::rmse) == worst);
+  CHECK(left_out.mean(0, &Residuals<>::rmse) == Approx(sum / 4));
+  CHECK(left_out.worst(0, &Residuals<>::rmse) == worst);
   CHECK(left_out.pooled(0).rmse() == Approx(pooled.rmse()));
 }
 
 TEST_CASE("a fitter that takes several batches chooses its components without the one left out", "[robustness]") {
-  const std::vector<Moments> batches = moments_of(campaign());
+  const std::vector<Moments<>> batches = moments_of(campaign());
   FitOptions options;
   options.components = ComponentRule::leave_one_batch_out();
-  const LeftOut nested =
-      leave_one_batch_out(batches, [&](const std::vector<Moments>& others) { return fit_pls(others, options); });
+  const LeftOut<> nested =
+      leave_one_batch_out(batches, [&](const std::vector<Moments<>>& others) { return fit_pls(others, options); });
   for (std::size_t i = 0; i < batches.size(); ++i) {
-    std::vector<Moments> rest = batches;
+    std::vector<Moments<>> rest = batches;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
     CHECK(nested.fits[i].components == fit_pls(rest, options).components);
   }
-  CHECK_THROWS_AS(leave_one_batch_out({batches[0]}, [](const Moments& m) { return fit_mlr(m); }), Error);
+  CHECK_THROWS_AS(leave_one_batch_out(std::vector{batches[0]}, [](const Moments<>& m) { return fit_mlr(m); }), Error);
 }

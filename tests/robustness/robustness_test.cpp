@@ -9,7 +9,7 @@ TEST_CASE("S_mean and S_std follow eq. (12) and (13) in both readings, own batch
   S << 100, 1, 3,  //
       2, 100, 6,   //
       5, 7, 100;
-  const Robustness r = robustness(S);
+  const Robustness<> r = robustness(S);
   CHECK(r.models[0].S_mean == Approx(2));
   CHECK(r.models[0].S_std == Approx(1));  // divisor K
   CHECK(r.models[2].S_mean == Approx(6));
@@ -27,7 +27,7 @@ TEST_CASE("S_mean and S_std follow eq. (12) and (13) in both readings, own batch
 TEST_CASE("the own batch counts when asked for", "[robustness]") {
   Matrix S(2, 2);
   S << 1, 3, 5, 7;
-  const Robustness r = robustness(S, true);
+  const Robustness<> r = robustness(S, true);
   CHECK(r.models[0].S_mean == Approx(2));
   CHECK(r.pooled.S_mean == Approx(4));
   CHECK(r.pooled.S_std == Approx(std::sqrt(5.0)));

@@ -8,8 +8,8 @@ using namespace thermfit;
 
 namespace {
 
-Observations observed(Matrix temperatures, Matrix errors) {
-  Observations result{"K1", temperatures, errors, Moments(temperatures, errors)};
+Observations<> observed(Matrix temperatures, Matrix errors) {
+  Observations<> result{"K1", temperatures, errors, Moments(temperatures, errors)};
   return result;
 }
 
@@ -48,9 +48,9 @@ TEST_CASE("points rank by the size of correlation, equal ones in column order, c
   t.col(3) = t.col(1);         // equal to column 1
   t.col(4).setConstant(7);
   t.col(5) << 1, -1, 1, -1;
-  const std::vector<RankedPoint> ranking = correlation_ranking(Moments(t, e));
+  const std::vector<RankedPoint<>> ranking = correlation_ranking(Moments(t, e));
   std::vector<Index> order;
-  for (const RankedPoint& point : ranking) order.push_back(point.point);
+  for (const RankedPoint<>& point : ranking) order.push_back(point.point);
   CHECK(order == std::vector<Index>{2, 1, 3, 5, 0, 4});
   CHECK(ranking[0].score == Approx(1));
   CHECK_FALSE(ranking[3].constant);
@@ -74,8 +74,8 @@ TEST_CASE("with several errors a ranking looks at one of them, or at all", "[sel
 
 TEST_CASE("the ranking of a batch of one row, or of a constant error, is the column order", "[select]") {
   const ThermalRows data(10, 3, 1, 2);
-  for (const Moments& m : {Moments(data.temperatures.topRows(1), data.errors.topRows(1)),
-                           Moments(data.temperatures, Matrix::Constant(10, 1, 3.3))}) {
+  for (const Moments<>& m : {Moments(data.temperatures.topRows(1), data.errors.topRows(1)),
+                             Moments(data.temperatures, Matrix::Constant(10, 1, 3.3))}) {
     const auto ranking = correlation_ranking(m);
     for (Index i = 0; i < 3; ++i) CHECK(ranking[static_cast<std::size_t>(i)].point == i);
   }
@@ -83,16 +83,21 @@ TEST_CASE("the ranking of a batch of one row, or of a constant error, is the col
 
 TEST_CASE("anything that names points is a rule, and what it names is checked", "[select]") {
   const ThermalRows data(20, 3, 1, 3);
-  const Observations batch = observed(data.temperatures, data.errors);
+  const Observations<> batch = observed(data.temperatures, data.errors);
   static_assert(is_selection_rule<ByCorrelation>, "");
   static_assert(!is_selection_rule<int>, "");
-  const auto last_ones = [](const Observations& b, Index count) {
+  const auto last_ones = [](const Observations<>& b, Index count) {
     std::vector<Index> points;
     for (Index p = b.moments.temperatures(); p-- > 0 && count-- > 0;) points.push_back(p);
     return points;
   };
   CHECK(select_points(last_ones, batch, 2) == std::vector<Index>{2, 1});
   CHECK(select_points(ByCorrelation{}, batch, 99).size() == 3);
-  CHECK_THROWS_AS(select_points([](const Observations&, Index) { return std::vector<Index>{3}; }, batch, 1), Error);
-  CHECK_THROWS_AS(select_points([](const Observations&, Index) { return std::vector<Index>{1, 1}; }, batch, 2), Error);
+  CHECK_THROWS_AS(select_points([](const Observations<>&, Index) { return std::vector<Index>{3}; }, batch, 1), Error);
+  CHECK_THROWS_AS(select_points(
+                      [](const Observations<>&, Index) {
+                        return std::vector<Index>{1, 1};
+                      },
+                      batch, 2),
+                  Error);
 }

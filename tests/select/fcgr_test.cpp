@@ -13,7 +13,7 @@ using namespace thermfit;
 namespace {
 
 /// Two groups of points on independent sources, and a dead one in column 2.
-Observations two_groups() {
+Observations<> two_groups() {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   Matrix t(60, 6), e(60, 1);
@@ -68,7 +68,7 @@ TEST_CASE("grey relational grades equal a hand calculation", "[select]") {
 }
 
 TEST_CASE("FCGR takes the best point of each class and needs the rows", "[select]") {
-  Observations batch = two_groups();
+  Observations<> batch = two_groups();
   const Vector grades = grey_relational_grades(batch.temperatures, batch.errors);
   const std::vector<Index> points = select_points(ByFcgr{}, batch, 2);
   REQUIRE(points.size() == 2);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "thermfit/fit/mlr.hpp"
 #include "thermfit/fit/pcr.hpp"
 #include "thermfit/fit/pls.hpp"
@@ -16,35 +18,48 @@ inline const char* name(Method method) {
   return names[static_cast<int>(method)];
 }
 
-/// fit_pls, fit_mlr, fit_pcr or fit_ridge on one Moments or on those of several batches.
-template <class Data>
-LinearFit fit(Method method, const Data& moments, const FitOptions& options = {}) {
+namespace detail {
+
+/// The fit that `method` names, on anything the four take; fit_mlr has no options.
+template <typename Scalar, class... Data>
+LinearFit<Scalar> fit(Method method, const FitOptions& options, const Data&... data) {
   switch (method) {
     case Method::mlr:
-      return fit_mlr(moments);
+      return thermfit::fit_mlr(data...);
     case Method::pcr:
-      return fit_pcr(moments, options);
+      return thermfit::fit_pcr(data..., options);
     case Method::ridge:
-      return fit_ridge(moments, options);
+      return thermfit::fit_ridge(data..., options);
     case Method::pls:
       break;
   }
-  return fit_pls(moments, options);
+  return thermfit::fit_pls(data..., options);
 }
 
-/// The same row-wise.
-inline LinearFit fit(Method method, const Matrix& temperatures, const Matrix& errors, const FitOptions& options = {}) {
-  switch (method) {
-    case Method::mlr:
-      return fit_mlr(temperatures, errors);
-    case Method::pcr:
-      return fit_pcr(temperatures, errors, options);
-    case Method::ridge:
-      return fit_ridge(temperatures, errors, options);
-    case Method::pls:
-      break;
-  }
-  return fit_pls(temperatures, errors, options);
+}  // namespace detail
+
+/// fit_pls, fit_mlr, fit_pcr or fit_ridge on one Moments; errors are theirs.
+template <typename Scalar>
+LinearFit<Scalar> fit(Method method, const Moments<Scalar>& moments, const FitOptions& options = {}) {
+  return detail::fit<Scalar>(method, options, moments);
 }
+
+/// The same on the moments of several batches, which may choose components or the penalty.
+template <typename Scalar>
+LinearFit<Scalar> fit(Method method, const std::vector<Moments<Scalar>>& batches, const FitOptions& options = {}) {
+  return detail::fit<Scalar>(method, options, batches);
+}
+
+/// The same row-wise. Temperatures rows x points, errors rows x responses, um.
+template <typename Temperatures, typename Errors, typename Scalar = typename Temperatures::Scalar>
+LinearFit<Scalar> fit(Method method, const Eigen::MatrixBase<Temperatures>& temperatures,
+                      const Eigen::MatrixBase<Errors>& errors, const FitOptions& options = {}) {
+  using Rows = MatrixView<Scalar>;
+  return detail::fit<Scalar>(method, options, Rows(temperatures), Rows(errors));
+}
+
+THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit<double>(Method, const Moments<double>&, const FitOptions&));
+THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit<double>(Method, const std::vector<Moments<double>>&,
+                                                         const FitOptions&));
 
 }  // namespace thermfit

@@ -1,17 +1,24 @@
 #pragma once
 
-#include "thermfit/fit/spectrum.hpp"
+#include <vector>
+
+#include "thermfit/fit/impl/spectrum.hpp"
 
 namespace thermfit {
 
 namespace detail {
 
-template <class Standardised>
-LinearFit fit_mlr(const Standardised& data) {
-  const Spectrum temperatures = spectrum(data);
+template <class Standardised, typename Scalar = typename Standardised::Scalar>
+LinearFit<Scalar> fit_mlr(const Standardised& data) {
+  const Spectrum<Scalar> temperatures = spectrum(data);
   temperatures.require_resolved(temperatures.rank() - 1);
-  return linear_fit(data, temperatures.directions * temperatures.slopes, temperatures,
-                    static_cast<double>(temperatures.rank()));
+  return linear_fit(data, MatrixX<Scalar>(temperatures.directions * temperatures.slopes), temperatures,
+                    static_cast<Scalar>(temperatures.rank()));
+}
+
+template <typename Scalar>
+LinearFit<Scalar> mlr_of_rows(const MatrixView<Scalar>& temperatures, const MatrixView<Scalar>& errors) {
+  return fit_mlr(StandardisedRows<Scalar>(temperatures, errors, Scaling::both));
 }
 
 }  // namespace detail
@@ -21,17 +28,29 @@ LinearFit fit_mlr(const Standardised& data) {
 /// Channels are standardised, which changes nothing but the rounding. Dependent temperatures (constant, duplicated,
 /// sums of others) lower the reported rank, and of the many least-squares solutions the one with the smallest
 /// standardised coefficients is returned. Errors: fewer than two rows; condition number past moments_condition_limit.
-inline LinearFit fit_mlr(const Moments& moments) {
-  return detail::fit_mlr(StandardisedMoments(moments, Scaling::both));
+/// Allocates.
+template <typename Scalar>
+LinearFit<Scalar> fit_mlr(const Moments<Scalar>& moments) {
+  return detail::fit_mlr(detail::StandardisedMoments<Scalar>(moments, Scaling::both));
 }
 
 /// The same over several batches: from their merged moments.
-inline LinearFit fit_mlr(const std::vector<Moments>& batches) { return fit_mlr(merged(batches)); }
-
-/// The same row-wise (QR, then SVD): for condition numbers up to about 1e13. Temperatures rows x points, errors
-/// rows x responses, um.
-inline LinearFit fit_mlr(const Matrix& temperatures, const Matrix& errors) {
-  return detail::fit_mlr(StandardisedRows(temperatures, errors, Scaling::both));
+template <typename Scalar>
+LinearFit<Scalar> fit_mlr(const std::vector<Moments<Scalar>>& batches) {
+  return fit_mlr(merged(batches));
 }
+
+/// The same row-wise (QR, then SVD): for condition numbers up to about 1e13 in double, 1e5 in float. Temperatures rows
+/// x points, errors rows x responses, um. Allocates copies.
+template <typename Temperatures, typename Errors, typename Scalar = typename Temperatures::Scalar>
+LinearFit<Scalar> fit_mlr(const Eigen::MatrixBase<Temperatures>& temperatures,
+                          const Eigen::MatrixBase<Errors>& errors) {
+  return detail::mlr_of_rows<Scalar>(temperatures, errors);
+}
+
+THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit_mlr<double>(const Moments<double>&));
+namespace detail {
+THERMFIT_COMPILED_TEMPLATE(LinearFit<double> mlr_of_rows<double>(const MatrixView<double>&, const MatrixView<double>&));
+}  // namespace detail
 
 }  // namespace thermfit

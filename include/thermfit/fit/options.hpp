@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "thermfit/types.hpp"
@@ -31,5 +32,25 @@ struct FitOptions {
   ComponentRule components = ComponentRule::paper();  ///< PLS and PCR
   std::optional<double> ridge_lambda;                 ///< ridge; none: chosen by leaving one batch out
 };
+
+/// Decimal places of moments_condition_limit: two less than the digits of Scalar, halved.
+template <typename Scalar = double>
+inline constexpr int moments_condition_digits = (std::numeric_limits<Scalar>::digits10 - 2) / 2;
+
+namespace detail {
+
+template <typename Scalar>
+constexpr Scalar power_of_ten(int exponent) {
+  return exponent == 0 ? Scalar(1) : 10 * power_of_ten<Scalar>(exponent - 1);
+}
+
+}  // namespace detail
+
+/// Largest condition number of standardised temperatures at which coefficients are computed from moments: 1e6 for
+/// double, 1e2 for float, 1e8 for an 80-bit long double. Moments square it: at the limit a coefficient of double may be
+/// off by 1e6^2 times its 1e-16, that is one part in ten thousand (float and long double: in a thousand). Past it a fit
+/// from moments throws; a fit from rows does not.
+template <typename Scalar = double>
+inline constexpr Scalar moments_condition_limit = detail::power_of_ten<Scalar>(moments_condition_digits<Scalar>);
 
 }  // namespace thermfit

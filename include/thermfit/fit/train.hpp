@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thermfit/fit/fit.hpp"
@@ -32,77 +34,93 @@ FitOptions settled(FitOptions options, const Chosen& chosen) {
 }
 
 /// Models that stand in for each lost sensor: `fitter` on the moments of the others, coefficient of the lost one zero.
-/// None for a single sensor.
-template <class Fitter>
-std::vector<SubstituteModel> substitute_models(const Moments& moments, const Fitter& fitter) {
+/// None for a single sensor. Errors are those of the fitter. Allocates.
+template <typename Scalar, class Fitter>
+std::vector<SubstituteModel> substitute_models(const Moments<Scalar>& moments, const Fitter& fitter) {
   std::vector<SubstituteModel> substitutes;
   for (Index lost = 0; moments.temperatures() > 1 && lost < moments.temperatures(); ++lost) {
     std::vector<Index> others;
     for (Index p = 0; p < moments.temperatures(); ++p) {
       if (p != lost) others.push_back(p);
     }
-    const Moments seen = moments.subset(others);
+    const Moments<Scalar> seen = moments.subset(others);
     SubstituteModel substitute;
     substitute.lost = lost;
-    const LinearModel<> model = model_of(fitter(seen));
-    substitute.residual_deviation_um = S(residuals(model, seen));
-    substitute.model.intercept = model.intercept;
-    substitute.model.coefficients = Matrix::Zero(moments.temperatures(), moments.errors());
-    substitute.model.coefficients(others, Eigen::all) = model.coefficients;
+    const LinearModel<Scalar> model = model_of(fitter(seen));
+    substitute.residual_deviation_um = S(residuals(model, seen)).template cast<double>();
+    LinearModel<Scalar> of_all{MatrixX<Scalar>::Zero(moments.temperatures(), moments.errors()), model.intercept};
+    of_all.coefficients(others, Eigen::all) = model.coefficients;
+    substitute.model = of_all.template cast<double>();
     substitutes.push_back(std::move(substitute));
   }
   return substitutes;
 }
 
-/// The parts of a trained model that follow from a fit and the moments it was made of; names, batches and settings
-/// are left to the caller.
-inline TrainedModel trained_model(const LinearFit& fit, const Moments& moments) {
+/// The parts of a trained model that follow from a fit and the moments it was made of, rounded to double; names,
+/// batches and settings are left to the caller. Allocates.
+template <typename Scalar>
+TrainedModel trained_model(const LinearFit<Scalar>& fit, const Moments<Scalar>& moments) {
+  const auto kept = [](const auto& numbers) { return numbers.template cast<double>(); };
   TrainedModel trained;
   trained.components = fit.components;
   trained.ridge_lambda = fit.ridge_lambda;
-  trained.model = fit.model;
-  trained.standardised_coefficients = fit.standardised_coefficients;
-  trained.temperature_mean = fit.channels.temperature_mean;
-  trained.temperature_scale = fit.channels.temperature_scale;
-  trained.error_mean = fit.channels.error_mean;
-  trained.error_scale = fit.channels.error_scale;
-  trained.latent = fit.latent;
-  trained.residual_deviation_um = fit.residual_deviation_um;
+  trained.model = kept(fit.model);
+  trained.standardised_coefficients = kept(fit.standardised_coefficients);
+  trained.temperature_mean = kept(fit.channels.temperature_mean);
+  trained.temperature_scale = kept(fit.channels.temperature_scale);
+  trained.error_mean = kept(fit.channels.error_mean);
+  trained.error_scale = kept(fit.channels.error_scale);
+  trained.latent = kept(fit.latent);
+  trained.residual_deviation_um = kept(fit.residual_deviation_um);
   trained.degrees_of_freedom = std::max<Index>(0, std::lround(fit.degrees_of_freedom));
-  trained.condition_number = fit.condition_number;
-  trained.domain = training_domain(fit, moments);
+  trained.condition_number = static_cast<double>(fit.condition_number);
+  trained.domain = kept(training_domain(fit, moments));
   trained.tool_version = THERMFIT_VERSION;
   return trained;
 }
 
-/// One model of all batches of a campaign, complete with training domain, substitutes for lost sensors, sensor
-/// envelope and provenance. Batches must agree in their channels. Throws Error as the fit does, naming nothing but the
-/// data. Allocates.
-inline TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {}) {
-  if (campaign.empty()) throw Error("train", "no batch", "1 or more");
+namespace detail {
+
+/// The plan's fit, and the moments of the plan's points in every batch.
+template <typename Scalar>
+struct PlannedFit {
+  LinearFit<Scalar> fit;
+  Moments<Scalar> all;
+};
+
+template <typename Scalar>
+PlannedFit<Scalar> fit_plan(const Campaign& campaign, const TrainingPlan& plan, const std::vector<Index>& points) {
   const Batch& first = campaign.front();
-  std::vector<Index> points = plan.points;
-  for (Index p = 0; plan.points.empty() && p < first.temperatures.count(); ++p) points.push_back(p);
-  std::vector<Moments> batches;
-  std::vector<Observations> rows;
+  std::vector<Moments<Scalar>> batches;
+  std::vector<Observations<Scalar>> rows;
   for (const Batch& batch : campaign) {
     if (batch.temperatures.names != first.temperatures.names || batch.errors.names != first.errors.names) {
       throw Error("batch " + batch.name, "other channels than batch " + first.name,
                   "the same temperatures and errors in every batch");
     }
-    Observations seen = observe(batch, plan.reference);
+    Observations<Scalar> seen = observe<Scalar>(batch, plan.reference);
     batches.push_back(seen.moments.subset(points));
     if (plan.row_wise) rows.push_back(std::move(seen));
   }
-  LinearFit fitted;
-  if (plan.row_wise) {
-    const Observations all = merged(rows);
-    fitted = fit(plan.method, all.temperatures(Eigen::all, points), all.errors, plan.options);
-  } else {
-    fitted = fit(plan.method, batches, plan.options);
-  }
-  const Moments all = merged(batches);
-  TrainedModel trained = trained_model(fitted, all);
+  if (!plan.row_wise) return {thermfit::fit(plan.method, batches, plan.options), merged(batches)};
+  const Observations<Scalar> all = merged(rows);
+  const MatrixX<Scalar> chosen = all.temperatures(Eigen::all, points);
+  return {thermfit::fit(plan.method, chosen, all.errors, plan.options), merged(batches)};
+}
+
+}  // namespace detail
+
+/// One model of all batches of a campaign, complete with training domain, substitutes for lost sensors, sensor
+/// envelope and provenance; computed in Scalar, kept in double. Batches must agree in their channels. Throws Error as
+/// the fit does, naming nothing but the data. Allocates.
+template <typename Scalar = double>
+TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {}) {
+  if (campaign.empty()) throw Error("train", "no batch", "1 or more");
+  const Batch& first = campaign.front();
+  std::vector<Index> points = plan.points;
+  for (Index p = 0; plan.points.empty() && p < first.temperatures.count(); ++p) points.push_back(p);
+  const detail::PlannedFit<Scalar> fitted = detail::fit_plan<Scalar>(campaign, plan, points);
+  TrainedModel trained = trained_model(fitted.fit, fitted.all);
   trained.method = name(plan.method);
   trained.selection = plan.selection;
   trained.reference = plan.reference;
@@ -110,11 +128,14 @@ inline TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {
     trained.temperatures.push_back(first.temperatures.names[static_cast<std::size_t>(point)]);
   }
   trained.errors = first.errors.names;
-  trained.envelope = sensor_envelope(campaign, trained.temperatures);
-  const FitOptions same = settled(plan.options, fitted);
-  trained.substitutes = substitute_models(all, [&](const Moments& m) { return fit(plan.method, m, same); });
+  trained.envelope = sensor_envelope<Scalar>(campaign, trained.temperatures);
+  const FitOptions same = settled(plan.options, fitted.fit);
+  trained.substitutes =
+      substitute_models(fitted.all, [&](const Moments<Scalar>& m) { return fit(plan.method, m, same); });
   for (const Batch& batch : campaign) trained.batches.push_back({batch.name, batch.rows(), batch.digest});
   return trained;
 }
+
+THERMFIT_COMPILED_TEMPLATE(TrainedModel train<double>(const Campaign&, const TrainingPlan&));
 
 }  // namespace thermfit

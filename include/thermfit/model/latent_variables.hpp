@@ -5,11 +5,25 @@
 namespace thermfit {
 
 /// The latent variables behind a PLS or PCR model, in standardised units; empty for MLR and ridge.
+template <typename Scalar = double>
 struct LatentVariables {
-  Matrix weights, loadings, rotations;                              ///< sensors x components
-  Matrix error_loadings;                                            ///< errors x components
-  Vector explained_temperature_variance, explained_error_variance;  ///< cumulative share per component, 0…1
-  Vector vip;                                                       ///< per sensor
+  MatrixX<Scalar> weights, loadings, rotations;                              ///< sensors x components
+  MatrixX<Scalar> error_loadings;                                            ///< errors x components
+  VectorX<Scalar> explained_temperature_variance, explained_error_variance;  ///< cumulative share per component, 0…1
+  VectorX<Scalar> vip;                                                       ///< per sensor
+
+  /// The same, rounded to Other.
+  template <typename Other>
+  LatentVariables<Other> cast() const {
+    const auto to = [](const auto& numbers) { return numbers.template cast<Other>(); };
+    return {to(weights),
+            to(loadings),
+            to(rotations),
+            to(error_loadings),
+            to(explained_temperature_variance),
+            to(explained_error_variance),
+            to(vip)};
+  }
 };
 
 }  // namespace thermfit

@@ -26,8 +26,14 @@ struct LinearModel {
 
   /// Many samples at once: rows x Sensors to rows x Errors. Host side; allocates the result.
   template <class Rows>
-  Matrix predict_rows(const Eigen::MatrixBase<Rows>& temperatures) const {
+  MatrixX<Scalar> predict_rows(const Eigen::MatrixBase<Rows>& temperatures) const {
     return (temperatures * coefficients).rowwise() + intercept.transpose();
+  }
+
+  /// The same model, its numbers rounded to Other.
+  template <typename Other>
+  LinearModel<Other, Sensors, Errors> cast() const {
+    return {coefficients.template cast<Other>(), intercept.template cast<Other>()};
   }
 };
 

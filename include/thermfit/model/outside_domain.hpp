@@ -15,8 +15,10 @@ struct OutsideDomain {
 
 /// Judges a distance at the 95 % or 99 % limits, its range apart. A limit of 0 means that there is nothing to judge; a
 /// distance that is not a number lies outside.
-inline OutsideDomain outside_limits(const TrainingDomain<>& domain, const DomainDistance<>& distance, int percent) {
-  const auto beyond = [](double value, double limit) { return limit > 0 && !(value <= limit); };
+template <typename Scalar, int Sensors, int Components>
+OutsideDomain outside_limits(const TrainingDomain<Scalar, Sensors, Components>& domain,
+                             const DomainDistance<Scalar>& distance, int percent) {
+  const auto beyond = [](Scalar value, Scalar limit) { return limit > 0 && !(value <= limit); };
   OutsideDomain outside;
   outside.t2 = beyond(distance.t2, percent == 95 ? domain.t2_limit_95 : domain.t2_limit_99);
   outside.spe = beyond(distance.spe, percent == 95 ? domain.spe_limit_95 : domain.spe_limit_99);
@@ -24,8 +26,9 @@ inline OutsideDomain outside_limits(const TrainingDomain<>& domain, const Domain
 }
 
 /// Judges one sample of the model's temperatures (sensors long) at the 99 % limits and by range.
-template <class Temperatures>
-OutsideDomain outside_domain(const TrainingDomain<>& domain, const Eigen::MatrixBase<Temperatures>& temperatures) {
+template <typename Scalar, int Sensors, int Components, typename Temperatures>
+OutsideDomain outside_domain(const TrainingDomain<Scalar, Sensors, Components>& domain,
+                             const Eigen::MatrixBase<Temperatures>& temperatures) {
   OutsideDomain outside = outside_limits(domain, domain.distance(temperatures), 99);
   outside.range =
       (temperatures.array() < domain.lowest.array()).any() || (temperatures.array() > domain.highest.array()).any();
@@ -38,12 +41,15 @@ struct OutsideShares {
 };
 
 /// Over rows x sensors of the model's temperatures; all 0 without rows.
-inline OutsideShares outside_shares(const TrainingDomain<>& domain, const Matrix& temperatures) {
+template <typename Scalar, int Sensors, int Components, typename Temperatures>
+OutsideShares outside_shares(const TrainingDomain<Scalar, Sensors, Components>& domain,
+                             const Eigen::MatrixBase<Temperatures>& temperatures) {
+  const MatrixView<Scalar> rows = temperatures;
   OutsideShares shares;
-  if (temperatures.rows() == 0) return shares;
-  const double row = 1 / static_cast<double>(temperatures.rows());
-  for (Index r = 0; r < temperatures.rows(); ++r) {
-    const OutsideDomain outside = outside_domain(domain, temperatures.row(r).transpose());
+  if (rows.rows() == 0) return shares;
+  const double row = 1 / static_cast<double>(rows.rows());
+  for (Index r = 0; r < rows.rows(); ++r) {
+    const OutsideDomain outside = outside_domain(domain, rows.row(r).transpose());
     shares.range += outside.range * row;
     shares.t2 += outside.t2 * row;
     shares.spe += outside.spe * row;

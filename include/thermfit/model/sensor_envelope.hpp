@@ -24,10 +24,11 @@ struct SensorEnvelope {
 
 /// The envelope of the sensors `names` over all rows of `campaign`, in the order of `names`.
 /// Throws Error on a name that a batch lacks. A campaign without rows gives an empty envelope. Allocates the result.
-inline SensorEnvelope sensor_envelope(const Campaign& campaign, const std::vector<std::string>& names) {
+template <typename Scalar = double>
+SensorEnvelope sensor_envelope(const Campaign& campaign, const std::vector<std::string>& names) {
   SensorEnvelope envelope;
   const auto start_at_zero = [&](Vector& figure) {
-    if (figure.size() == 0) figure = Vector::Zero(static_cast<Index>(names.size()));
+    if (figure.size() == 0) figure = VectorX<Scalar>::Zero(static_cast<Index>(names.size())).template cast<double>();
   };
   for (const Batch& batch : campaign) {
     if (batch.rows() == 0) continue;
@@ -38,7 +39,7 @@ inline SensorEnvelope sensor_envelope(const Campaign& campaign, const std::vecto
       const Index column = batch.temperatures.find(names[i]);
       if (column < 0) throw Error(batch.name, "no temperature '" + names[i] + "'");
       const auto sensor = static_cast<Index>(i);
-      const auto readings = batch.temperatures.values.col(column);
+      const auto readings = detail::lazy<Scalar>(batch.temperatures.values).col(column);
       double& lowest = envelope.lowest_degC(sensor);
       double& highest = envelope.highest_degC(sensor);
       lowest = first_batch ? readings.minCoeff() : std::min(lowest, readings.minCoeff());

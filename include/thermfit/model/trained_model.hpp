@@ -38,7 +38,7 @@ struct TrainedModel {
   LinearModel<> model;               ///< raw units: um, um/K
   Matrix standardised_coefficients;  ///< sensors x errors
   Vector temperature_mean, temperature_scale, error_mean, error_scale;
-  LatentVariables latent;
+  LatentVariables<> latent;
   Vector residual_deviation_um;  ///< per error, S of eq. (10) on the training rows
   Index degrees_of_freedom = 0;
   double condition_number = 0;  ///< of the standardised temperatures

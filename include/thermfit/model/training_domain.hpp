@@ -34,6 +34,23 @@ struct TrainingDomain {
     z.noalias() -= loadings.lazyProduct(t);
     return {t.cwiseProduct(t).cwiseQuotient(score_variance).sum(), z.squaredNorm()};
   }
+
+  /// The same domain, its numbers rounded to Other.
+  template <typename Other>
+  TrainingDomain<Other, Sensors, Components> cast() const {
+    const auto to = [](const auto& numbers) { return numbers.template cast<Other>(); };
+    return {to(lowest),
+            to(highest),
+            to(mean),
+            to(scale),
+            to(rotations),
+            to(loadings),
+            to(score_variance),
+            static_cast<Other>(t2_limit_95),
+            static_cast<Other>(t2_limit_99),
+            static_cast<Other>(spe_limit_95),
+            static_cast<Other>(spe_limit_99)};
+  }
 };
 
 }  // namespace thermfit

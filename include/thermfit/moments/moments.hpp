@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
 #include "thermfit/types.hpp"
 
@@ -17,6 +18,10 @@ namespace thermfit {
 /// Channels are ordered temperatures first, then errors. Rows are added in blocks that are centred on their own mean
 /// and merged by the pairwise update of Chan, Golub and LeVeque (The American Statistician 37, 1983):
 /// `M = M_a + M_b + d d' n_a n_b / n` with `d = mean_b - mean_a`. No difference of large sums is ever taken.
+///
+/// Scalar is what the sums are kept in: float, double or long double. `Moments moments(temperatures, errors)` takes
+/// that of its rows; `Moments<>` is double.
+template <typename Scalar = double>
 class Moments {
  public:
   Moments() = default;
@@ -24,13 +29,14 @@ class Moments {
   /// No rows yet, of `temperatures` points and `errors` responses.
   Moments(Index temperatures, Index errors)
       : temperatures_(temperatures),
-        mean_(Vector::Zero(temperatures + errors)),
-        lowest_(Vector::Constant(temperatures + errors, std::numeric_limits<double>::infinity())),
+        mean_(VectorX<Scalar>::Zero(temperatures + errors)),
+        lowest_(VectorX<Scalar>::Constant(temperatures + errors, std::numeric_limits<Scalar>::infinity())),
         highest_(-lowest_),
-        products_(Matrix::Zero(temperatures + errors, temperatures + errors)) {}
+        products_(MatrixX<Scalar>::Zero(temperatures + errors, temperatures + errors)) {}
 
   /// Of all rows of `temperatures` (rows x points) and `errors` (rows x responses). Throws like add_rows.
-  Moments(const Eigen::Ref<const Matrix>& temperatures, const Eigen::Ref<const Matrix>& errors)
+  template <typename Temperatures, typename Errors>
+  Moments(const Eigen::MatrixBase<Temperatures>& temperatures, const Eigen::MatrixBase<Errors>& errors)
       : Moments(temperatures.cols(), errors.cols()) {
     add_rows(temperatures, errors);
   }
@@ -39,6 +45,7 @@ class Moments {
   Index temperatures() const { return temperatures_; }
   Index errors() const { return mean_.size() - temperatures_; }
 
+  /// Per point or response, in the units of the rows.
   auto temperature_mean() const { return mean_.head(temperatures_); }
   auto error_mean() const { return mean_.tail(errors()); }
   auto temperature_lowest() const { return lowest_.head(temperatures_); }
@@ -53,72 +60,26 @@ class Moments {
   /// Channel `c` (temperatures first, then errors) does not vary: its range is empty, or its deviation is no more
   /// than the rounding of its values. Such a channel carries no information and is left out of every scaling.
   bool constant(Index c) const {
-    const double largest = std::max(std::abs(lowest_(c)), std::abs(highest_(c)));
-    const double rounding = 16 * std::numeric_limits<double>::epsilon() * largest;
+    const Scalar largest = std::max(std::abs(lowest_(c)), std::abs(highest_(c)));
+    const Scalar rounding = 16 * std::numeric_limits<Scalar>::epsilon() * largest;
     return !(highest_(c) - lowest_(c) > rounding);
   }
 
   /// Adds rows. The widths must agree and every value be finite: throws Error naming row (from 0 within this call)
-  /// and column otherwise, and is then unchanged. Allocates one block.
-  void add_rows(const Eigen::Ref<const Matrix>& temperatures, const Eigen::Ref<const Matrix>& errors) {
-    if (temperatures.cols() != temperatures_ || errors.cols() != this->errors() ||
-        temperatures.rows() != errors.rows()) {
-      throw Error("rows", shape(temperatures) + " temperatures and " + shape(errors) + " errors",
-                  std::to_string(temperatures_) + " and " + std::to_string(this->errors()) +
-                      " columns with equal numbers of rows");
-    }
-    Moments sum = *this;
-    constexpr Index block_rows = 256;  // a block of some ten channels stays in the first-level cache
-    Matrix block(block_rows, mean_.size());
-    for (Index first = 0; first < temperatures.rows(); first += block_rows) {
-      const Index count = std::min(block_rows, temperatures.rows() - first);
-      block.topLeftCorner(count, temperatures_) = temperatures.middleRows(first, count);
-      block.topRightCorner(count, this->errors()) = errors.middleRows(first, count);
-      sum.merge(of_block(block.topRows(count), temperatures_, first));
-    }
-    *this = std::move(sum);
+  /// and column otherwise, and is then unchanged. Allocates one block, and a copy of what has no contiguous columns
+  /// (a row-major matrix, an expression).
+  template <typename Temperatures, typename Errors>
+  void add_rows(const Eigen::MatrixBase<Temperatures>& temperatures, const Eigen::MatrixBase<Errors>& errors) {
+    add_blocks(temperatures, errors);
   }
 
   /// Adds the rows another Moments has seen. An empty one (of any width) changes nothing; otherwise the widths must
   /// agree, or Error is thrown.
-  void merge(const Moments& other) {
-    if (other.rows_ == 0) return;
-    if (rows_ == 0 && mean_.size() == 0) {
-      *this = other;
-      return;
-    }
-    if (other.temperatures_ != temperatures_ || other.errors() != errors()) {
-      throw Error(
-          "moments",
-          std::to_string(other.temperatures_) + " temperatures and " + std::to_string(other.errors()) + " errors",
-          std::to_string(temperatures_) + " and " + std::to_string(errors()) + ", as in those merged before");
-    }
-    const double total = static_cast<double>(rows_ + other.rows_);
-    const double share = static_cast<double>(other.rows_) / total;
-    const Vector step = other.mean_ - mean_;
-    products_ += other.products_;
-    products_.noalias() += (static_cast<double>(rows_) * share * step) * step.transpose();
-    mean_ += share * step;
-    lowest_ = lowest_.cwiseMin(other.lowest_);
-    highest_ = highest_.cwiseMax(other.highest_);
-    rows_ += other.rows_;
-  }
+  void merge(const Moments& other);
 
   /// The same rows seen through the temperature columns `points`, in that order, and the error columns `responses`.
-  Moments subset(const std::vector<Index>& points, const std::vector<Index>& responses) const {
-    std::vector<Index> channels;
-    for (const Index point : points) channels.push_back(checked(point, temperatures_, "point"));
-    for (const Index response : responses) {
-      channels.push_back(temperatures_ + checked(response, errors(), "response"));
-    }
-    Moments result(static_cast<Index>(points.size()), static_cast<Index>(responses.size()));
-    result.rows_ = rows_;
-    result.mean_ = mean_(channels);
-    result.lowest_ = lowest_(channels);
-    result.highest_ = highest_(channels);
-    result.products_ = products_(channels, channels);
-    return result;
-  }
+  /// Columns that do not exist: Error. Allocates the result.
+  Moments subset(const std::vector<Index>& points, const std::vector<Index>& responses) const;
 
   /// The same rows seen through the temperature columns `points`, with all errors.
   Moments subset(const std::vector<Index>& points) const {
@@ -129,7 +90,8 @@ class Moments {
 
   /// The same rows with `offset` (one per temperature point) taken off every temperature: absolute temperatures to
   /// rises, with the first row of the batch as offset. Products of deviations do not change.
-  Moments minus(const Eigen::Ref<const Vector>& offset) const {
+  template <typename Offset>
+  Moments minus(const Eigen::MatrixBase<Offset>& offset) const {
     Moments result = *this;
     result.mean_.head(temperatures_) -= offset;
     result.lowest_.head(temperatures_) -= offset;
@@ -138,6 +100,10 @@ class Moments {
   }
 
  private:
+  using Rows = MatrixView<Scalar>;
+
+  void add_blocks(const Rows& temperatures, const Rows& errors);
+
   template <class Block>
   static Moments of_block(const Eigen::MatrixBase<Block>& rows, Index temperatures, Index first_row) {
     Moments block(temperatures, rows.cols() - temperatures);
@@ -146,7 +112,7 @@ class Moments {
     if (!block.mean_.allFinite()) refuse_non_finite(rows, temperatures, first_row);
     block.lowest_ = rows.colwise().minCoeff().transpose();
     block.highest_ = rows.colwise().maxCoeff().transpose();
-    const Matrix deviations = rows.rowwise() - block.mean_.transpose();
+    const MatrixX<Scalar> deviations = rows.rowwise() - block.mean_.transpose();
     block.products_.template triangularView<Eigen::Lower>() = deviations.transpose() * deviations;
     block.products_ = block.products_.template selfadjointView<Eigen::Lower>();
     return block;
@@ -171,39 +137,106 @@ class Moments {
     throw Error(what, std::to_string(index), "0 to " + std::to_string(size - 1));
   }
 
-  static std::string shape(const Eigen::Ref<const Matrix>& m) {
-    return std::to_string(m.rows()) + " x " + std::to_string(m.cols());
-  }
+  static std::string shape(const Rows& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); }
 
   Index rows_ = 0;
   Index temperatures_ = 0;
-  Vector mean_, lowest_, highest_;
-  Matrix products_;
+  VectorX<Scalar> mean_, lowest_, highest_;
+  MatrixX<Scalar> products_;
 };
 
-/// All of them together, merged in their order.
-inline Moments merged(const std::vector<Moments>& batches) {
-  Moments total;
-  for (const Moments& batch : batches) total.merge(batch);
+template <typename Temperatures, typename Errors>
+Moments(const Eigen::MatrixBase<Temperatures>&, const Eigen::MatrixBase<Errors>&)
+    -> Moments<typename Temperatures::Scalar>;
+
+template <typename Scalar>
+void Moments<Scalar>::add_blocks(const Rows& temperatures, const Rows& errors) {
+  if (temperatures.cols() != temperatures_ || errors.cols() != this->errors() || temperatures.rows() != errors.rows()) {
+    throw Error("rows", shape(temperatures) + " temperatures and " + shape(errors) + " errors",
+                std::to_string(temperatures_) + " and " + std::to_string(this->errors()) +
+                    " columns with equal numbers of rows");
+  }
+  Moments sum = *this;
+  constexpr Index block_rows = 256;  // a block of some ten channels stays in the first-level cache
+  MatrixX<Scalar> block(block_rows, mean_.size());
+  for (Index first = 0; first < temperatures.rows(); first += block_rows) {
+    const Index count = std::min(block_rows, temperatures.rows() - first);
+    block.topLeftCorner(count, temperatures_) = temperatures.middleRows(first, count);
+    block.topRightCorner(count, this->errors()) = errors.middleRows(first, count);
+    sum.merge(of_block(block.topRows(count), temperatures_, first));
+  }
+  *this = std::move(sum);
+}
+
+template <typename Scalar>
+void Moments<Scalar>::merge(const Moments& other) {
+  if (other.rows_ == 0) return;
+  if (rows_ == 0 && mean_.size() == 0) {
+    *this = other;
+    return;
+  }
+  if (other.temperatures_ != temperatures_ || other.errors() != errors()) {
+    throw Error("moments",
+                std::to_string(other.temperatures_) + " temperatures and " + std::to_string(other.errors()) + " errors",
+                std::to_string(temperatures_) + " and " + std::to_string(errors()) + ", as in those merged before");
+  }
+  const Scalar total = static_cast<Scalar>(rows_ + other.rows_);
+  const Scalar share = static_cast<Scalar>(other.rows_) / total;
+  const VectorX<Scalar> step = other.mean_ - mean_;
+  products_ += other.products_;
+  products_.noalias() += (static_cast<Scalar>(rows_) * share * step) * step.transpose();
+  mean_ += share * step;
+  lowest_ = lowest_.cwiseMin(other.lowest_);
+  highest_ = highest_.cwiseMax(other.highest_);
+  rows_ += other.rows_;
+}
+
+template <typename Scalar>
+Moments<Scalar> Moments<Scalar>::subset(const std::vector<Index>& points, const std::vector<Index>& responses) const {
+  std::vector<Index> channels;
+  for (const Index point : points) channels.push_back(checked(point, temperatures_, "point"));
+  for (const Index response : responses) {
+    channels.push_back(temperatures_ + checked(response, errors(), "response"));
+  }
+  Moments result(static_cast<Index>(points.size()), static_cast<Index>(responses.size()));
+  result.rows_ = rows_;
+  result.mean_ = mean_(channels);
+  result.lowest_ = lowest_(channels);
+  result.highest_ = highest_(channels);
+  result.products_ = products_(channels, channels);
+  return result;
+}
+
+/// All of them together, merged in their order. Widths must agree, or Error.
+template <typename Scalar>
+Moments<Scalar> merged(const std::vector<Moments<Scalar>>& batches) {
+  Moments<Scalar> total;
+  for (const Moments<Scalar>& batch : batches) total.merge(batch);
   return total;
 }
 
 /// Entry i: all batches but the i-th, from merged prefixes and suffixes: 3K merges for K batches and, unlike taking
-/// a batch away from the total, no cancellation.
-inline std::vector<Moments> leave_one_out(const std::vector<Moments>& batches) {
-  std::vector<Moments> result(batches.size());
-  Moments before, after;
+/// a batch away from the total, no cancellation. Widths must agree, or Error.
+template <typename Scalar>
+std::vector<Moments<Scalar>> leave_one_out(const std::vector<Moments<Scalar>>& batches) {
+  std::vector<Moments<Scalar>> result(batches.size());
+  Moments<Scalar> before, after;
   for (std::size_t i = 0; i < batches.size(); ++i) {
     result[i] = before;
     before.merge(batches[i]);
   }
   for (std::size_t i = batches.size(); i-- > 0;) {
     result[i].merge(after);
-    Moments longer = batches[i];
+    Moments<Scalar> longer = batches[i];
     longer.merge(after);
     after = std::move(longer);
   }
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(void Moments<double>::add_blocks(const Rows&, const Rows&));
+THERMFIT_COMPILED_TEMPLATE(void Moments<double>::merge(const Moments<double>&));
+THERMFIT_COMPILED_TEMPLATE(Moments<double> Moments<double>::subset(const std::vector<Index>&, const std::vector<Index>&)
+                               const);
 
 }  // namespace thermfit

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "thermfit/error.hpp"
@@ -9,43 +10,47 @@
 namespace thermfit {
 
 /// Accuracy S_mean and robustness S_std of eq. (12) and (13), um; divisor K, not K - 1.
+template <typename Scalar = double>
 struct MeanAndStd {
-  double S_mean = 0;
-  double S_std = 0;
+  Scalar S_mean = 0;
+  Scalar S_std = 0;
 
-  static MeanAndStd of(const std::vector<double>& values) {
+  static MeanAndStd of(const std::vector<Scalar>& values) {
     if (values.empty()) return {};
-    const auto v = Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size())).array();
-    const double mean = v.mean();
+    const auto v = Eigen::Map<const VectorX<Scalar>>(values.data(), static_cast<Index>(values.size())).array();
+    const Scalar mean = v.mean();
     return {mean, std::sqrt((v - mean).square().mean())};
   }
 };
 
 /// A matrix of S (row: the batch a model was made from; column: the batch it predicts), summarised.
+template <typename Scalar = double>
 struct Robustness {
-  std::vector<MeanAndStd> models;          ///< row by row: each model over the batches
-  std::vector<MeanAndStd> batches;         ///< column by column: each batch over the models
-  MeanAndStd per_model;                    ///< mean and standard deviation of the models' S_mean
-  MeanAndStd pooled;                       ///< over all pairs
-  Index worst_model = 0, worst_batch = 0;  ///< the pair with the largest S
-  double worst_S = 0;
+  std::vector<MeanAndStd<Scalar>> models;   ///< row by row: each model over the batches
+  std::vector<MeanAndStd<Scalar>> batches;  ///< column by column: each batch over the models
+  MeanAndStd<Scalar> per_model;             ///< mean and standard deviation of the models' S_mean
+  MeanAndStd<Scalar> pooled;                ///< over all pairs
+  Index worst_model = 0, worst_batch = 0;   ///< the pair with the largest S
+  Scalar worst_S = 0;
 };
 
-/// Both readings of the paper's table 8, um. `S` is K x K; the diagonal, a model on its own batch, is left out unless
-/// `own_batch`. Needs two batches then, and a square matrix: Error otherwise.
-inline Robustness robustness(const Matrix& S, bool own_batch = false) {
+/// Both readings of the paper's table 8, um. `matrix` is K x K; the diagonal, a model on its own batch, is left out
+/// unless `own_batch`. Needs two batches then, and a square matrix: Error otherwise. Allocates.
+template <typename Derived, typename Scalar = typename Derived::Scalar>
+Robustness<Scalar> robustness(const Eigen::MatrixBase<Derived>& matrix, bool own_batch = false) {
+  const MatrixView<Scalar> S = matrix;
   if (S.rows() != S.cols() || S.rows() < (own_batch ? 1 : 2)) {
     throw Error("robustness", std::to_string(S.rows()) + " models on " + std::to_string(S.cols()) + " batches",
                 "two batches or more, each with its model");
   }
-  Robustness result;
-  std::vector<double> all, means;
-  std::vector<std::vector<double>> columns(static_cast<std::size_t>(S.cols()));
+  Robustness<Scalar> result;
+  std::vector<Scalar> all, means;
+  std::vector<std::vector<Scalar>> columns(static_cast<std::size_t>(S.cols()));
   for (Index model = 0; model < S.rows(); ++model) {
-    std::vector<double> row;
+    std::vector<Scalar> row;
     for (Index batch = 0; batch < S.cols(); ++batch) {
       if (model == batch && !own_batch) continue;
-      const double value = S(model, batch);
+      const Scalar value = S(model, batch);
       row.push_back(value);
       columns[static_cast<std::size_t>(batch)].push_back(value);
       if (value > result.worst_S) {
@@ -55,12 +60,12 @@ inline Robustness robustness(const Matrix& S, bool own_batch = false) {
       }
     }
     all.insert(all.end(), row.begin(), row.end());
-    result.models.push_back(MeanAndStd::of(row));
+    result.models.push_back(MeanAndStd<Scalar>::of(row));
     means.push_back(result.models.back().S_mean);
   }
-  for (const auto& column : columns) result.batches.push_back(MeanAndStd::of(column));
-  result.per_model = MeanAndStd::of(means);
-  result.pooled = MeanAndStd::of(all);
+  for (const auto& column : columns) result.batches.push_back(MeanAndStd<Scalar>::of(column));
+  result.per_model = MeanAndStd<Scalar>::of(means);
+  result.pooled = MeanAndStd<Scalar>::of(all);
   return result;
 }
 

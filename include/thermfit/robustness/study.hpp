@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,50 +29,54 @@ struct StudyOptions {
 };
 
 /// A method and a selection rule judged across batches at every number of points.
+template <typename Scalar = double>
 struct StudiedMethod {
   Method method;
   Selection selection;
-  Index components = 0;                           ///< fixed number of latent variables; 0: by the study's rule
-  std::vector<std::optional<SweepStep>> sweep{};  ///< entry k - 1: k points; empty where the method has no answer
-  std::string refusal{};                          ///< why the first empty step is empty
-  Index points = 0;                               ///< of `chosen`
+  Index components = 0;  ///< fixed number of latent variables; 0: by the study's rule
+  std::vector<std::optional<SweepStep<Scalar>>>
+      sweep{};            ///< entry k - 1: k points; empty where the method has no answer
+  std::string refusal{};  ///< why the first empty step is empty
+  Index points = 0;       ///< of `chosen`
 
   /// The step at the study's number of points, if there is one.
-  const SweepStep* chosen() const {
+  const SweepStep<Scalar>* chosen() const {
     const auto k = static_cast<std::size_t>(points);
     return k >= 1 && k <= sweep.size() && sweep[k - 1] ? &*sweep[k - 1] : nullptr;
   }
 };
 
 /// One row of the leave-one-batch-out table: a method on all given points.
+template <typename Scalar = double>
 struct LeftOutMethod {
   Method method;
   Index components = 0;  ///< of PLS and PCR
-  std::optional<LeftOut> result;
+  std::optional<LeftOut<Scalar>> result;
   std::string refusal;
 };
 
 /// The paper's whole comparison on one campaign.
+template <typename Scalar = double>
 struct Study {
   StudyOptions options;
-  Index points = 0;                     ///< temperature points there are
-  std::vector<Matrix> correlations;     ///< per batch: points x errors, eq. (1)
-  std::vector<StudiedMethod> methods;   ///< PLS and MLR on correlated points first
-  std::vector<LeftOutMethod> left_out;  ///< every batch predicted by a model of all the others
+  Index points = 0;                             ///< temperature points there are
+  std::vector<MatrixX<Scalar>> correlations;    ///< per batch: points x errors, eq. (1)
+  std::vector<StudiedMethod<Scalar>> methods;   ///< PLS and MLR on correlated points first
+  std::vector<LeftOutMethod<Scalar>> left_out;  ///< every batch predicted by a model of all the others
 };
 
 namespace detail {
 
-template <class Rule>
-StudiedMethod study_method(const std::vector<Observations>& batches, StudiedMethod studied, const Rule& rule,
-                           const StudyOptions& options, Index most_points) {
+template <typename Scalar, class Rule>
+StudiedMethod<Scalar> study_method(const std::vector<Observations<Scalar>>& batches, StudiedMethod<Scalar> studied,
+                                   const Rule& rule, const StudyOptions& options, Index most_points) {
   studied.points = options.points;
-  const auto fitter = [&](const Moments& moments) {
+  const auto fitter = [&](const Moments<Scalar>& moments) {
     FitOptions one_batch = options.fit;
     if (studied.components > 0) one_batch.components = ComponentRule::fixed(studied.components);
     if (studied.method == Method::ridge && !one_batch.ridge_lambda)
-      one_batch.ridge_lambda = hoerl_kennard_baldwin(moments);
-    return fit(studied.method, moments, one_batch);
+      one_batch.ridge_lambda = static_cast<double>(hoerl_kennard_baldwin(moments));
+    return thermfit::fit(studied.method, moments, one_batch);
   };
   for (Index k = 1; k <= most_points; ++k) {
     try {
@@ -84,13 +89,15 @@ StudiedMethod study_method(const std::vector<Observations>& batches, StudiedMeth
   return studied;
 }
 
-inline LeftOutMethod leave_out(const std::vector<Observations>& batches, Method method, Index components,
-                               FitOptions options) {
+template <typename Scalar>
+LeftOutMethod<Scalar> leave_out(const std::vector<Observations<Scalar>>& batches, Method method, Index components,
+                                FitOptions options) {
   if (components > 0) options.components = ComponentRule::fixed(components);
-  LeftOutMethod row{method, components, {}, {}};
+  LeftOutMethod<Scalar> row{method, components, {}, {}};
   try {
-    row.result = leave_one_batch_out(moments_of(batches),
-                                     [&](const std::vector<Moments>& others) { return fit(method, others, options); });
+    row.result = leave_one_batch_out(moments_of(batches), [&](const std::vector<Moments<Scalar>>& others) {
+      return thermfit::fit(method, others, options);
+    });
   } catch (const Error& error) {
     row.refusal = error.what();
   }
@@ -104,17 +111,19 @@ inline LeftOutMethod leave_out(const std::vector<Observations>& batches, Method 
 /// and ridge on correlated points and for MLR on FCGR points; then every batch left out once, on all points. A method
 /// that refuses (condition number, too few classes) is an empty step with its reason, not the end of the study. Fewer
 /// than two batches: Error. FCGR needs rows. Allocates.
-inline Study study(const std::vector<Observations>& batches, const StudyOptions& options = {}) {
+template <typename Scalar>
+Study<Scalar> study(const std::vector<Observations<Scalar>>& batches, const StudyOptions& options = {}) {
   if (batches.size() < 2)
     throw Error("study", std::to_string(batches.size()) + " batch", "2 or more",
                 "robustness is how a model does on batches it was not made from");
-  Study result{options, batches.front().moments.temperatures(), {}, {}, {}};
+  Study<Scalar> result{options, batches.front().moments.temperatures(), {}, {}, {}};
   if (options.points < 1 || options.points > result.points)
     throw Error("number of points", std::to_string(options.points), "1 to " + std::to_string(result.points));
   const Index most = options.most_points > 0 ? std::min(options.most_points, result.points) : result.points;
-  for (const Observations& batch : batches) result.correlations.push_back(correlations(batch.moments));
+  for (const Observations<Scalar>& batch : batches) result.correlations.push_back(correlations(batch.moments));
   const auto add = [&](Method method, Selection selection, Index components, const auto& rule) {
-    result.methods.push_back(detail::study_method(batches, {method, selection, components}, rule, options, most));
+    result.methods.push_back(
+        detail::study_method<Scalar>(batches, {method, selection, components}, rule, options, most));
   };
   add(Method::pls, Selection::correlation, 0, ByCorrelation{});
   add(Method::pls, Selection::correlation, 1, ByCorrelation{});
@@ -131,5 +140,7 @@ inline Study study(const std::vector<Observations>& batches, const StudyOptions&
   result.left_out.push_back(detail::leave_out(batches, Method::ridge, 0, options.fit));
   return result;
 }
+
+THERMFIT_COMPILED_TEMPLATE(Study<double> study<double>(const std::vector<Observations<double>>&, const StudyOptions&));
 
 }  // namespace thermfit

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "thermfit/moments/observations.hpp"
@@ -10,41 +9,45 @@
 namespace thermfit {
 
 /// Correlation coefficients of eq. (1), points x responses, sign kept; 0 where either channel is constant.
-/// Needs two rows to be anything but 0.
-inline Matrix correlations(const Moments& moments) {
-  Matrix r = Matrix::Zero(moments.temperatures(), moments.errors());
+/// Needs two rows to be anything but 0. Allocates the result.
+template <typename Scalar>
+MatrixX<Scalar> correlations(const Moments<Scalar>& moments) {
+  MatrixX<Scalar> r = MatrixX<Scalar>::Zero(moments.temperatures(), moments.errors());
   for (Index p = 0; p < r.rows(); ++p) {
     for (Index e = 0; e < r.cols(); ++e) {
       if (moments.constant(p) || moments.constant(moments.temperatures() + e)) continue;
-      const double scale = std::sqrt(moments.temperature_products()(p, p)) * std::sqrt(moments.error_products()(e, e));
-      if (scale > 0) r(p, e) = std::clamp(moments.cross_products()(p, e) / scale, -1.0, 1.0);
+      const Scalar scale = std::sqrt(moments.temperature_products()(p, p)) * std::sqrt(moments.error_products()(e, e));
+      if (scale > 0) r(p, e) = std::clamp(moments.cross_products()(p, e) / scale, Scalar(-1), Scalar(1));
     }
   }
   return r;
 }
 
 /// One temperature point in a ranking.
+template <typename Scalar = double>
 struct RankedPoint {
   Index point = 0;        ///< column of the temperatures
-  double score = 0;       ///< what it is ranked by, larger is better
+  Scalar score = 0;       ///< what it is ranked by, larger is better
   bool constant = false;  ///< does not vary: carries no information, always last
 };
 
 /// Points by the size of their correlation with error `response`, or, if that is negative, by the root mean square of
-/// their correlations with all errors. Constant points come last; equal ones keep the order of the columns.
-inline std::vector<RankedPoint> correlation_ranking(const Moments& moments, Index response = -1) {
+/// their correlations with all errors. Constant points come last; equal ones keep the order of the columns. A response
+/// there is not: Error. Allocates.
+template <typename Scalar>
+std::vector<RankedPoint<Scalar>> correlation_ranking(const Moments<Scalar>& moments, Index response = -1) {
   if (response >= moments.errors()) {
     throw Error("response", std::to_string(response), "0 to " + std::to_string(moments.errors() - 1));
   }
-  const Matrix r = correlations(moments);
-  std::vector<RankedPoint> ranking;
+  const MatrixX<Scalar> r = correlations(moments);
+  std::vector<RankedPoint<Scalar>> ranking;
   for (Index p = 0; p < r.rows(); ++p) {
-    const double score = response >= 0   ? std::abs(r(p, response))
+    const Scalar score = response >= 0   ? std::abs(r(p, response))
                          : r.cols() == 1 ? std::abs(r(p, 0))
-                                         : r.row(p).norm() / std::sqrt(static_cast<double>(r.cols()));
+                                         : r.row(p).norm() / std::sqrt(static_cast<Scalar>(r.cols()));
     ranking.push_back({p, score, moments.constant(p)});
   }
-  std::stable_sort(ranking.begin(), ranking.end(), [](const RankedPoint& a, const RankedPoint& b) {
+  std::stable_sort(ranking.begin(), ranking.end(), [](const RankedPoint<Scalar>& a, const RankedPoint<Scalar>& b) {
     return a.constant != b.constant ? b.constant : a.score > b.score;
   });
   return ranking;
@@ -54,13 +57,16 @@ inline std::vector<RankedPoint> correlation_ranking(const Moments& moments, Inde
 struct ByCorrelation {
   Index response = -1;  ///< error it looks at; negative: all
 
-  std::vector<Index> operator()(const Observations& batch, Index count) const {
+  template <typename Scalar>
+  std::vector<Index> operator()(const Observations<Scalar>& batch, Index count) const {
     std::vector<Index> points;
-    for (const RankedPoint& ranked : correlation_ranking(batch.moments, response)) {
+    for (const RankedPoint<Scalar>& ranked : correlation_ranking(batch.moments, response)) {
       if (static_cast<Index>(points.size()) < count) points.push_back(ranked.point);
     }
     return points;
   }
 };
+
+THERMFIT_COMPILED_TEMPLATE(std::vector<RankedPoint<double>> correlation_ranking<double>(const Moments<double>&, Index));
 
 }  // namespace thermfit

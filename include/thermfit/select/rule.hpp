@@ -10,20 +10,20 @@ namespace thermfit {
 
 /// A selection rule is anything that names the best temperature points of a batch:
 ///
-///     std::vector<Index> rule(const Observations& batch, Index count);
+///     std::vector<Index> rule(const Observations<Scalar>& batch, Index count);
 ///
 /// It returns `count` different columns of the temperatures, best first, or fewer where it finds no more; the set for
 /// one count need not contain that for a smaller one. ByCorrelation and ByFcgr are rules, and so is a lambda.
-template <class Rule>
+template <class Rule, typename Scalar = double>
 inline constexpr bool is_selection_rule =
-    std::is_invocable_r_v<std::vector<Index>, const Rule&, const Observations&, Index>;
+    std::is_invocable_r_v<std::vector<Index>, const Rule&, const Observations<Scalar>&, Index>;
 
 /// The points `rule` names, checked: a wrong callable fails to compile with a sentence, a wrong column is an Error.
-template <class Rule>
-std::vector<Index> select_points(const Rule& rule, const Observations& batch, Index count) {
-  static_assert(is_selection_rule<Rule>,
-                "A selection rule is called as rule(const thermfit::Observations& batch, thermfit::Index count) and "
-                "returns std::vector<thermfit::Index>, the chosen temperature columns, best first.");
+template <class Rule, typename Scalar>
+std::vector<Index> select_points(const Rule& rule, const Observations<Scalar>& batch, Index count) {
+  static_assert(is_selection_rule<Rule, Scalar>,
+                "A selection rule is called as rule(const thermfit::Observations<Scalar>& batch, thermfit::Index "
+                "count) and returns std::vector<thermfit::Index>, the chosen temperature columns, best first.");
   const std::vector<Index> points = rule(batch, count);
   std::vector<bool> seen(static_cast<std::size_t>(batch.moments.temperatures()), false);
   for (const Index point : points) {

@@ -31,9 +31,9 @@ void study(benchmark::State& state) {
   FitOptions options;
   options.components = ComponentRule::fixed(1);
   for (auto _ : state) {
-    const std::vector<Observations> seen = observe(batches);
-    auto steps = sweep_points(seen, ByCorrelation{}, [&](const Moments& m) { return fit_pls(m, options); });
-    auto baseline = cross_batch(seen, ByFcgr{}, 2, [](const Moments& m) { return fit_mlr(m); });
+    const std::vector<Observations<>> seen = observe(batches);
+    auto steps = sweep_points(seen, ByCorrelation{}, [&](const Moments<>& m) { return fit_pls(m, options); });
+    auto baseline = cross_batch(seen, ByFcgr{}, 2, [](const Moments<>& m) { return fit_mlr(m); });
     benchmark::DoNotOptimize(&steps);
     benchmark::DoNotOptimize(&baseline);
   }
@@ -41,9 +41,9 @@ void study(benchmark::State& state) {
 BENCHMARK(study)->Unit(benchmark::kMillisecond);
 
 void leave_one_batch_out_ten_components(benchmark::State& state) {
-  const std::vector<Moments> batches = moments_of(observe(campaign()));
+  const std::vector<Moments<>> batches = moments_of(observe(campaign()));
   for (auto _ : state) {
-    auto error = left_out_error(batches, [](const Moments& m) { return pls_path(m); });
+    auto error = left_out_error(batches, [](const Moments<>& m) { return pls_path(m); });
     benchmark::DoNotOptimize(&error);
   }
 }

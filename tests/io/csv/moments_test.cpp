@@ -13,7 +13,7 @@ TEST_CASE("moments of a stream equal those of the rows, in rises and in degrees"
     const Moments rows(model_temperatures(batch, reference), batch.errors.values);
     const CsvMoments stream = read_moments(path, {}, reference);
     REQUIRE(stream.batches.size() == 1);
-    const Moments& moments = stream.batches[0].moments;
+    const Moments<>& moments = stream.batches[0].moments;
     CHECK(moments.rows() == 79);
     CHECK(moments.temperature_mean().isApprox(rows.temperature_mean(), 1e-12));
     CHECK(moments.temperature_products().isApprox(rows.temperature_products(), 1e-12));

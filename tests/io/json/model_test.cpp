@@ -25,7 +25,7 @@ TrainedModel example() {
   m.error_mean = m.error_scale = m.residual_deviation_um = Vector::Constant(1, 2.5);
   m.degrees_of_freedom = 77;
   m.condition_number = 40;
-  LatentVariables& v = m.latent;
+  LatentVariables<>& v = m.latent;
   v.weights = v.loadings = v.rotations = (Matrix(2, 1) << .701, .713).finished();
   v.error_loadings = Matrix::Constant(1, 1, .6637);
   v.explained_temperature_variance = v.explained_error_variance = Vector::Constant(1, .9988);

@@ -48,24 +48,24 @@ Transfer transfer_of(const std::array<Campaign, 3>& levels, const Campaign& real
   Transfer result;
   if (real.empty() || real[0].errors.find(output) < 0 || real[0].temperatures.count() < count) return result;
   const auto moments_of_batch = [&](const Batch& batch) {
-    return Moments(model_temperatures(batch, TemperatureReference::rise),
-                   Matrix(batch.errors.values.col(batch.errors.find(output))));
+    const MatrixX<Scalar> error =
+        detail::lazy<Scalar>(batch.errors.values).col(batch.errors.find(output)).template cast<Scalar>();
+    return Moments<Scalar>(model_temperatures<Scalar>(batch, TemperatureReference::rise), error);
   };
-  std::vector<Moments> measured;
+  std::vector<Moments<Scalar>> measured;
   for (const Batch& batch : real) measured.push_back(moments_of_batch(batch));
-  const std::vector<RankedPoint> ranking = correlation_ranking(merged(measured));
   std::vector<Index> points;
-  for (const RankedPoint& one : ranking)
+  for (const RankedPoint<Scalar>& one : correlation_ranking(merged(measured)))
     if (!one.constant && static_cast<Index>(points.size()) < count) points.push_back(one.point);
   for (std::size_t level = 0; level < levels.size(); ++level) {
-    std::vector<Moments> simulated;
+    std::vector<Moments<Scalar>> simulated;
     for (const Batch& batch : levels[level]) simulated.push_back(moments_of_batch(batch).subset(points));
-    const LinearFit fit = fit_pls(merged(simulated));
-    std::vector<double> S_by_batch;
-    for (const Moments& one : measured) S_by_batch.push_back(S(residuals(fit.model, one.subset(points)))(0));
-    const MeanAndStd score = MeanAndStd::of(S_by_batch);
-    result.S_mean[level] = score.S_mean;
-    result.S_std[level] = score.S_std;
+    const LinearFit<Scalar> fit = fit_pls(merged(simulated));
+    std::vector<Scalar> S_by_batch;
+    for (const Moments<Scalar>& one : measured) S_by_batch.push_back(S(residuals(fit.model, one.subset(points)))(0));
+    const auto score = MeanAndStd<Scalar>::of(S_by_batch);
+    result.S_mean[level] = static_cast<double>(score.S_mean);
+    result.S_std[level] = static_cast<double>(score.S_std);
   }
   for (const Index point : points) result.points.push_back(real[0].temperatures.names[static_cast<std::size_t>(point)]);
   return result;

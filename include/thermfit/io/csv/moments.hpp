@@ -14,7 +14,7 @@ namespace thermfit {
 struct BatchMoments {
   std::string name;   ///< value of the batch column; empty without one
   Vector first_degC;  ///< temperatures of its first row
-  Moments moments;
+  Moments<> moments;
 };
 
 /// The batches of one file as moments, in order of appearance, and what was met while reading.

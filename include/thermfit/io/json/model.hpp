@@ -132,7 +132,7 @@ void describe_model(Archive& io, TrainedModel& m) {
 
   const Index a = m.components;
   io.object("latent_variables", a > 0, [&](auto& inner) {
-    LatentVariables& v = m.latent;
+    LatentVariables<>& v = m.latent;
     inner.matrix("weights", v.weights, p, a);
     inner.matrix("loadings", v.loadings, p, a);
     inner.matrix("rotations", v.rotations, p, a);
