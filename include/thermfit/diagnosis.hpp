@@ -4,7 +4,6 @@
 /// with the data themselves. With all of simulation.hpp.
 
 #include "thermfit/diagnosis/diagnose.hpp"
-#include "thermfit/diagnosis/elaborate.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/findings/findings.hpp"
 #include "thermfit/simulation.hpp"
