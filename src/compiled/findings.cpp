@@ -1,0 +1,5 @@
+// The instances of include/thermfit/findings/ that thermfit::compiled holds: see thermfit/compiled.hpp.
+#include "thermfit/compiled.hpp"
+#undef THERMFIT_COMPILED_ELSEWHERE
+#define THERMFIT_COMPILED_ELSEWHERE
+#include "thermfit/findings/findings.hpp"
