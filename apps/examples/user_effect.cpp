@@ -76,5 +76,5 @@ int main() {
                   found.location.c_str(), diagnosis.gap.shrink_percent);
   };
   print("with the machine", diagnose(machine, real, effects));
-  print("from outputs alone", diagnose_paired(real, sim, effects));
+  print("from outputs alone", diagnose_outputs(real, sim, effects));
 }

@@ -1,3 +1,5 @@
+#include "thermfit/diagnosis/diagnose.hpp"
+
 #include <algorithm>
 
 #include "commands/commands.hpp"
@@ -5,7 +7,6 @@
 #include "report/diagnosis_json.hpp"
 #include "report/diagnosis_text.hpp"
 #include "thermfit/constants.hpp"
-#include "thermfit/diagnosis/diagnose.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/files/atomic_file.hpp"
@@ -62,8 +63,8 @@ unsigned thread_count(const Arguments& arguments) {
   return static_cast<unsigned>(arguments.integer("--threads", 1, 1024).value_or(0));
 }
 
-Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
-  PairedOptions options;
+Diagnosis diagnose_by_outputs(const Arguments& arguments, const Console& console) {
+  OutputsOptions options;
   options.room = arguments.value_or("--ambient", "");
   options.reference_degC = arguments.number("--reference", absolute_zero_degC, 2000).value_or(20);
   options.effects = effect_names(arguments, "--effects");
@@ -73,7 +74,7 @@ Diagnosis diagnose_outputs(const Arguments& arguments, const Console& console) {
   options.progress = [&console](const std::string& what) { console.progress(what); };
   const Campaign real = read_campaign(arguments, console, arguments.positionals());
   const Campaign sim = read_campaign(arguments, console, arguments.values("--sim"));
-  return diagnose_paired(real, sim, standard_effects(), options);
+  return diagnose_outputs(real, sim, standard_effects(), options);
 }
 
 Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
@@ -109,7 +110,7 @@ Exit run_diagnose(const Arguments& arguments, Console& console) {
   for (const char* option : {"--ambient", "--reference"})
     if (!paired && arguments.has(option))
       throw UsageError(std::string(option) + " goes with --sim; a machine file tells it itself");
-  const Diagnosis diagnosis = paired ? diagnose_outputs(arguments, console) : diagnose_machine(arguments, console);
+  const Diagnosis diagnosis = paired ? diagnose_by_outputs(arguments, console) : diagnose_machine(arguments, console);
   console.progress({});
   if (arguments.has("--json"))
     console.line(diagnosis_json(diagnosis));

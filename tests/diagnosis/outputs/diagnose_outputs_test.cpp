@@ -8,8 +8,8 @@
 using namespace thermfit;
 
 namespace {
-Diagnosis diagnose(const std::string& name, const PairedOptions& options = {}) {
-  return diagnose_paired(withheld_campaign(name, "real"), withheld_campaign(name, "sim"), standard_effects(), options);
+Diagnosis diagnose(const std::string& name, const OutputsOptions& options = {}) {
+  return diagnose_outputs(withheld_campaign(name, "real"), withheld_campaign(name, "sim"), standard_effects(), options);
 }
 
 /// A shop door that is open for an hour and lets cold air in.
@@ -66,14 +66,14 @@ TEST_CASE("no gap and mere miscalibration raise no alarm", "[gap]") {
 }
 
 TEST_CASE("with the true effect taken out of the catalogue no other is named for it with confidence", "[gap]") {
-  PairedOptions options;
+  OutputsOptions options;
   options.without = {"speed-shift"};
   const Diagnosis found = diagnose("case-05", options);
   CHECK((found.verdict == Verdict::unknown || found.effects.empty() || found.effects[0].confidence < .5));
 }
 
 TEST_CASE("the number of threads does not change the result", "[gap]") {
-  PairedOptions one, two;
+  OutputsOptions one, two;
   one.threads = 1;
   two.threads = 2;
   one.effects = two.effects = {"sensor-drift", "sensor-gain", "speed-shift"};
@@ -83,8 +83,8 @@ TEST_CASE("the number of threads does not change the result", "[gap]") {
 }
 
 TEST_CASE("a single batch is diagnosed with the weaker claim said", "[gap]") {
-  const Diagnosis found = diagnose_paired({withheld_campaign("case-05", "real")[0]},
-                                          withheld_campaign("case-05", "sim"), standard_effects());
+  const Diagnosis found = diagnose_outputs({withheld_campaign("case-05", "real")[0]},
+                                           withheld_campaign("case-05", "sim"), standard_effects());
   CHECK_FALSE(found.gap.held_out);
   bool said = false;
   for (const WeakerClaim& claim : found.weaker_claims) said = said || claim.kind == WeakerClaim::Kind::one_batch;
@@ -100,13 +100,13 @@ TEST_CASE("an effect of one's own is found in the outputs, told by its meaning, 
   machine.effects = {{"open-door", "ambient", "time", {{"drop_K", 6}}}};
   const Campaign real = small_campaign(machine, 4, 1, library);
 
-  const Diagnosis found = diagnose_paired(real, nominal, library);
+  const Diagnosis found = diagnose_outputs(real, nominal, library);
   REQUIRE(found.effects.size() == 1);
   CHECK(found.effects[0].effect == "open-door");
   CHECK(found.effects[0].location == "ambient");
   CHECK(found.effects[0].meaning == "cold air comes in");
   CHECK(cli::diagnosis_text(found).find("t ambient cold air comes in (open-door driven by time") != std::string::npos);
-  CHECK(diagnose_paired(real, nominal, standard_effects()).verdict != Verdict::effect);
+  CHECK(diagnose_outputs(real, nominal, standard_effects()).verdict != Verdict::effect);
 
   FoundEffect doubtful = found.effects[0];
   doubtful.alternatives = {{"radiation", "T1", "", .2}};

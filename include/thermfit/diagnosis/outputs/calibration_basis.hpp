@@ -25,36 +25,40 @@ namespace detail {
 
 /// What drives the simulated courses, and each drive's traces through first-order lags: every input to the first and
 /// second power, the ambient, and the fading of the start.
+template <typename Scalar = double>
 struct Drives {
-  std::vector<std::vector<Matrix>> traces;  ///< by drive, by batch
+  std::vector<std::vector<MatrixX<Scalar>>> traces;  ///< by drive, by batch
 
   explicit Drives(const PairedCampaign& campaign) {
     const std::vector<double> lags_s = lag_ladder_s(campaign);
     for (Index i = 0; i < static_cast<Index>(campaign.inputs.size()); ++i) {
       double largest = 0;
       for (const PairedBatch& batch : campaign.batches)
-        largest = std::max(largest, batch.inputs.col(i).cwiseAbs().maxCoeff());
+        for (Index k = 0; k < batch.inputs.rows(); ++k) largest = std::max(largest, std::abs(batch.inputs(k, i)));
       if (largest == 0) continue;
       add(campaign, [&](const PairedBatch& batch) {
-        const Vector share = batch.inputs.col(i) / largest;
-        std::vector<Vector> columns;
+        const MatrixX<Scalar>& inputs = batch.inputs;
+        const VectorX<Scalar> share = inputs.col(i) / largest;
+        std::vector<VectorX<Scalar>> columns;
         for (const double lag_s : lags_s)
-          for (const Vector& course : {share, Vector(share.array().square())})
+          for (const VectorX<Scalar>& course : {share, VectorX<Scalar>(share.array().square())})
             columns.push_back(low_pass_held(batch.time_s, course, lag_s));
         return columns;
       });
     }
     if (campaign.room_is_simulated)
       add(campaign, [&](const PairedBatch& batch) {
-        std::vector<Vector> columns;
-        for (const double lag_s : lags_s)
-          columns.push_back(low_pass(batch.time_s, batch.room_degC, lag_s, batch.room_degC(0)).array() -
-                            batch.room_degC(0));
+        std::vector<VectorX<Scalar>> columns;
+        for (const double lag_s : lags_s) {
+          const VectorX<Scalar> felt = low_pass(batch.time_s, batch.room_degC, lag_s, batch.room_degC(0));
+          columns.push_back(felt.array() - batch.room_degC(0));
+        }
         return columns;
       });
     add(campaign, [&](const PairedBatch& batch) {
-      std::vector<Vector> columns;
-      for (const double lag_s : lags_s) columns.push_back(1 - (-batch.time_s / lag_s).array().exp());
+      const VectorX<Scalar>& time_s = batch.time_s;
+      std::vector<VectorX<Scalar>> columns;
+      for (const double lag_s : lags_s) columns.push_back(1 - (-time_s / lag_s).array().exp());
       return columns;
     });
   }
@@ -64,43 +68,51 @@ struct Drives {
   void add(const PairedCampaign& campaign, Columns columns_of) {
     traces.emplace_back();
     for (const PairedBatch& batch : campaign.batches) {
-      const std::vector<Vector> columns = columns_of(batch);
-      Matrix trace(batch.time_s.size(), static_cast<Index>(columns.size()));
+      const std::vector<VectorX<Scalar>> columns = columns_of(batch);
+      MatrixX<Scalar> trace(batch.time_s.size(), static_cast<Index>(columns.size()));
       for (std::size_t k = 0; k < columns.size(); ++k) trace.col(static_cast<Index>(k)) = columns[k];
       traces.back().push_back(trace);
     }
   }
 };
 
-inline Vector since_first(const Vector& course) { return course.array() - course(0); }
+inline Vector since_first(Vector course) {
+  for (Index k = course.size() - 1; k >= 0; --k) course(k) -= course(0);
+  return course;
+}
 
 /// The part of each batch's simulated rise that each drive causes (by drive, by batch): a regression on the traces.
+template <typename Scalar>
 struct Contributions {
-  std::vector<std::vector<Vector>> courses;
+  std::vector<std::vector<VectorX<Scalar>>> courses;
   double explained = 0;
 };
 
-inline Contributions contributions(const PairedCampaign& campaign, const Drives& drives, Index channel) {
+template <typename Scalar>
+Contributions<Scalar> contributions(const PairedCampaign& campaign, const Drives<Scalar>& drives, Index channel) {
   Index columns = 0;
   for (const auto& drive : drives.traces) columns += drive[0].cols();
-  Matrix regressors(campaign.rows(), columns);
-  Vector rise(campaign.rows());
+  MatrixX<Scalar> regressors(campaign.rows(), columns);
+  VectorX<Scalar> rise(campaign.rows());
   for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
     Index at = 0;
     for (const auto& drive : drives.traces) {
       campaign.part(regressors, b).middleCols(at, drive[b].cols()) = drive[b];
       at += drive[b].cols();
     }
-    campaign.part(rise, b) = since_first(campaign.batches[b].simulated.col(channel));
+    const MatrixX<Scalar>& simulated = campaign.batches[b].simulated;
+    campaign.part(rise, b) = since_first(simulated.col(channel));
   }
   const double scale = std::sqrt(rise.squaredNorm() / static_cast<double>(campaign.rows())) + 1e-9;
-  const Vector fitted =
-      fit_with_prior(cross_products(regressors, rise), Vector::Constant(columns, 30 * scale), .01 * scale).coefficients;
-  Contributions result;
+  const VectorX<Scalar> fitted =
+      fit_with_prior(cross_products(regressors, rise), VectorX<Scalar>::Constant(columns, 30 * scale), .01 * scale)
+          .coefficients;
+  Contributions<Scalar> result;
   Index at = 0;
   for (const auto& drive : drives.traces) {
     result.courses.emplace_back();
-    for (const Matrix& trace : drive) result.courses.back().push_back(trace * fitted.segment(at, trace.cols()));
+    for (const MatrixX<Scalar>& trace : drive)
+      result.courses.back().push_back(trace * fitted.segment(at, trace.cols()));
     at += drive[0].cols();
   }
   const double total = rise.squaredNorm();
@@ -113,55 +125,60 @@ inline Contributions contributions(const PairedCampaign& campaign, const Drives&
 /// Regressors for `channel`: a placement offset (temperatures, .5 K), for every drive its contribution (30 %) and that
 /// contribution lagged (50 %), for a temperature its distance to every other (a sensor sits between places, 15 %), for
 /// a displacement the temperature gaps and rises that carry expansion.
-inline CalibrationBasis calibration_basis(const PairedCampaign& campaign, const detail::Drives& drives, Index channel) {
+template <typename Scalar = double>
+CalibrationBasis calibration_basis(const PairedCampaign& campaign, const detail::Drives<Scalar>& drives,
+                                   Index channel) {
   const bool displacement = channel >= campaign.temperatures;
   const std::vector<double> lags_s = lag_ladder_s(campaign);
-  const detail::Contributions parts = detail::contributions(campaign, drives, channel);
+  const detail::Contributions<Scalar> parts = detail::contributions<Scalar>(campaign, drives, channel);
   CalibrationBasis basis;
   basis.explained = parts.explained;
 
-  Vector um_per_K = Vector::Zero(campaign.temperatures);
+  VectorX<Scalar> um_per_K = VectorX<Scalar>::Zero(campaign.temperatures);
   if (displacement && campaign.temperatures > 0) {
-    Matrix rises(campaign.rows(), campaign.temperatures);
-    Vector displaced(campaign.rows());
+    MatrixX<Scalar> rises(campaign.rows(), campaign.temperatures);
+    VectorX<Scalar> displaced(campaign.rows());
     for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
-      const Matrix& simulated = campaign.batches[b].simulated;
+      const MatrixX<Scalar>& simulated = campaign.batches[b].simulated;
       campaign.part(rises, b) =
           simulated.leftCols(campaign.temperatures).rowwise() - simulated.row(0).head(campaign.temperatures);
       campaign.part(displaced, b) = simulated.col(channel);
     }
-    um_per_K =
-        fit_with_prior(cross_products(rises, displaced), Vector::Constant(campaign.temperatures, 3), .2).coefficients;
+    um_per_K = fit_with_prior(cross_products(rises, displaced), VectorX<Scalar>::Constant(campaign.temperatures, 3), .2)
+                   .coefficients;
   }
 
   std::vector<double> prior_sd;
   for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
     const PairedBatch& batch = campaign.batches[b];
-    std::vector<Vector> columns;
+    const MatrixX<Scalar>&simulated = batch.simulated, &measured = batch.measured;
+    std::vector<VectorX<Scalar>> columns;
     prior_sd.clear();
     basis.borrowed.clear();
-    const auto add = [&](const Vector& column, double sd) {
+    const auto add = [&](const VectorX<Scalar>& column, double sd) {
       columns.push_back(column);
       prior_sd.push_back(sd);
     };
-    if (!displacement) add(Vector::Ones(batch.time_s.size()), .5);
+    if (!displacement) add(VectorX<Scalar>::Ones(batch.time_s.size()), .5);
     for (const auto& drive : parts.courses) {
       add(drive[b], .3);
-      for (std::size_t k = 0; k < 3; ++k) add(low_pass(batch.time_s, drive[b], lags_s[k], 0) - drive[b], .5);
+      for (std::size_t k = 0; k < 3; ++k)
+        add(VectorX<Scalar>(low_pass(batch.time_s, drive[b], lags_s[k], 0)) - drive[b], .5);
     }
     for (Index j = 0; j < campaign.temperatures; ++j) {
-      const Vector rise = detail::since_first(batch.simulated.col(j));
-      if (!displacement && j != channel) add(rise - detail::since_first(batch.simulated.col(channel)), .15);
+      const VectorX<Scalar> rise = detail::since_first(simulated.col(j));
+      if (!displacement && j != channel) add(rise - detail::since_first(simulated.col(channel)), .15);
       if (!displacement) continue;
       basis.borrowed.push_back(static_cast<Index>(columns.size()));
-      add(detail::since_first(batch.measured.col(j)) - rise, 1.5 * std::abs(um_per_K(j)) + .02);
+      add(detail::since_first(measured.col(j)) - rise, 1.5 * std::abs(um_per_K(j)) + .02);
       add(rise, .3 * std::abs(um_per_K(j)) + .02);
     }
-    basis.regressors.conservativeResize(campaign.rows(), static_cast<Index>(columns.size()));
+    MatrixX<Scalar>& regressors = basis.regressors;
+    if (b == 0) regressors.resize(campaign.rows(), static_cast<Index>(columns.size()));
     for (std::size_t k = 0; k < columns.size(); ++k)
-      campaign.part(basis.regressors, b).col(static_cast<Index>(k)) = columns[k];
+      campaign.part(regressors, b).col(static_cast<Index>(k)) = columns[k];
   }
-  basis.prior_sd = Eigen::Map<const Vector>(prior_sd.data(), static_cast<Index>(prior_sd.size()));
+  basis.prior_sd = Eigen::Map<const VectorX<Scalar>>(prior_sd.data(), static_cast<Index>(prior_sd.size()));
   return basis;
 }
 

@@ -5,44 +5,55 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "thermfit/diagnosis/diagnosis.hpp"
-#include "thermfit/diagnosis/outputs/scan.hpp"
+#include "thermfit/compiled.hpp"
+#include "thermfit/diagnosis/judgement/thresholds.hpp"
+#include "thermfit/diagnosis/leading_channel.hpp"
+#include "thermfit/diagnosis/outputs/suspects.hpp"
 #include "thermfit/diagnosis/outputs/views.hpp"
 #include "thermfit/statistics/parallel.hpp"
 #include "thermfit/statistics/reading_step.hpp"
 
 namespace thermfit {
 
-struct PairedOptions {
+struct OutputsOptions {
   std::string room;                  ///< ambient temperature column; empty: recognised
   double reference_degC = 20;        ///< of gain and nonlinear expansion
   std::vector<std::string> effects;  ///< only these; empty: the whole library
   std::vector<std::string> without;  ///< not these
-  unsigned seed = 1;
-  unsigned threads = 0;       ///< 0: all cores
-  double decisive_nats = 60;  ///< evidence over calibration that a named effect must have
+  unsigned seed = 1;                 ///< of resampling
+  unsigned threads = 0;              ///< 0: all cores
+  OutputThresholds thresholds;
+  Thresholds shared;  ///< of which rivals listed and folds that prove are the same as with a network
   std::function<void(const std::string&)> progress;
 };
 
 namespace detail {
 
-/// The state of a paired diagnosis between its steps.
-class PairedDiagnosis {
+/// The state of a diagnosis of outputs between its steps.
+template <typename Scalar = double>
+class OutputsDiagnosis {
  public:
-  PairedDiagnosis(const Campaign& real, const Campaign& sim, const EffectLibrary& library, const PairedOptions& options)
-      : options_(options), library_(library), campaign_(pair_campaigns(real, sim, options.room)), drives_(campaign_) {}
+  OutputsDiagnosis(const Campaign& real, const Campaign& sim, const EffectLibrary& library,
+                   const OutputsOptions& options)
+      : options_(options),
+        limits_(options.thresholds),
+        library_(library),
+        campaign_(pair_campaigns(real, sim, options.room)),
+        drives_(campaign_) {}
 
   Diagnosis run() {
     start();
-    for (int round = 0; round < 3; ++round) {
+    for (int round = 0; round < limits_.most_effects; ++round) {
       say("weighing effects, round " + std::to_string(round + 1));
       scan();
-      if (!decide(round)) break;
+      if (!take_best(round > 0)) break;
     }
-    finish();
+    conclude();
     return std::move(result_);
   }
 
@@ -52,51 +63,51 @@ class PairedDiagnosis {
   }
   const std::string& name(Index c) const { return campaign_.channels[static_cast<std::size_t>(c)]; }
   PairedChannel& channel(Index c) { return channels_[static_cast<std::size_t>(c)]; }
-  /// The channel the gap is told for: the first displacement, else the temperature with the largest gap.
+  const PairedChannel& channel(Index c) const { return channels_[static_cast<std::size_t>(c)]; }
+
   Index headline() const {
-    if (campaign_.temperatures < campaign_.channel_count()) return campaign_.temperatures;
-    Index largest = 0;
-    for (Index c = 1; c < campaign_.channel_count(); ++c)
-      if (channels_[static_cast<std::size_t>(c)].as_simulated >
-          channels_[static_cast<std::size_t>(largest)].as_simulated)
-        largest = c;
-    return largest;
+    return static_cast<Index>(leading_channel(
+        channels_.size(), [&](std::size_t c) { return static_cast<Index>(c) >= campaign_.temperatures; },
+        [&](std::size_t c) { return channels_[c].as_simulated; }));
   }
 
+  /// Calibration alone in every channel.
   void start() {
-    result_.simulator = SimulatorKind::outputs;
-    for (const PairedBatch& batch : campaign_.batches) result_.batches.push_back(batch.name);
     std::vector<double> looseness;
     for (Index c = 0; c < campaign_.channel_count(); ++c) {
       PairedChannel one;
-      one.basis = calibration_basis(campaign_, drives_, c);
-      one.gap.resize(campaign_.rows());
-      SeriesByBatch measured;
+      one.basis = calibration_basis<Scalar>(campaign_, drives_, c);
+      VectorX<Scalar> gap(campaign_.rows());
+      SeriesByBatch readings;
       for (std::size_t b = 0; b < campaign_.batches.size(); ++b) {
-        measured.push_back(campaign_.batches[b].measured.col(c));
-        campaign_.part(one.gap, b) = measured[b] - campaign_.batches[b].simulated.col(c);
+        const MatrixX<Scalar>&measured = campaign_.batches[b].measured, &simulated = campaign_.batches[b].simulated;
+        readings.push_back(measured.col(c));
+        campaign_.part(gap, b) = measured.col(c) - simulated.col(c);
       }
-      one.resolution = resolution_sd(measured);
-      one.as_simulated = rms_of(one.gap);
-      judge_calibration(campaign_, one);
+      one.resolution = resolution_sd(readings);
+      one.as_simulated = rms_of<Scalar>(gap);
+      one.gap = std::move(gap);
+      judge_calibration<Scalar>(campaign_, one);
       if (campaign_.is_output(c)) looseness.push_back(best_looseness(one));
       channels_.push_back(std::move(one));
     }
-    // Calibration is as loose as the median channel needs, but never so loose that it hides an effect.
-    std::nth_element(looseness.begin(), looseness.begin() + static_cast<std::ptrdiff_t>(looseness.size() / 2),
-                     looseness.end());
-    const double common = std::min(.5, looseness[looseness.size() / 2]);
+    const auto median = looseness.begin() + static_cast<std::ptrdiff_t>(looseness.size() / 2);
+    std::nth_element(looseness.begin(), median, looseness.end());
+    const double common = std::min(limits_.loosest, *median);
     for (PairedChannel& one : channels_) {
-      one.basis.prior_sd *= common;
-      judge_calibration(campaign_, one);
+      VectorX<Scalar>& prior_sd = one.basis.prior_sd;
+      prior_sd *= common;
+      judge_calibration<Scalar>(campaign_, one);
     }
     first_ = channels_;
   }
 
   static double best_looseness(const PairedChannel& channel) {
-    double best = -1e300, at = 1;
+    double best = -std::numeric_limits<double>::infinity(), at = 1;
+    const VectorX<Scalar>& prior_sd = channel.basis.prior_sd;
     for (const double looseness : {.06, .1, .2, .35, .6, 1.}) {
-      const double log = profiled_evidence(channel, channel.products, looseness * channel.basis.prior_sd).log;
+      const VectorX<Scalar> narrower = looseness * prior_sd;
+      const double log = profiled_evidence<Scalar>(channel, channel.products, narrower).log;
       if (log > best) best = log, at = looseness;
     }
     return at;
@@ -104,183 +115,166 @@ class PairedDiagnosis {
 
   bool wanted(const std::string& effect) const {
     const auto in = [&](const std::vector<std::string>& list) {
-      return std::count(list.begin(), list.end(), effect) > 0;
+      return std::find(list.begin(), list.end(), effect) != list.end();
     };
     return (options_.effects.empty() || in(options_.effects)) && !in(options_.without);
   }
 
-  void scan() {
-    std::vector<std::vector<Vector>> predicted;
+  /// The displacements of a calibrated simulator, by output and batch.
+  std::vector<std::vector<Vector>> calibrated_displacements() const {
+    std::vector<std::vector<Vector>> result;
     for (Index c = campaign_.temperatures; c < campaign_.channel_count(); ++c) {
       const PairedChannel& one = channel(c);
-      const Vector gap =
-          one.basis.regressors *
+      const MatrixX<Scalar>& regressors = one.basis.regressors;
+      const VectorX<Scalar> gap =
+          regressors *
           fit_with_prior(one.products, one.basis.prior_sd, one.calibrated * std::sqrt(one.correlation)).coefficients;
-      predicted.emplace_back();
-      for (std::size_t b = 0; b < campaign_.batches.size(); ++b)
-        predicted.back().push_back(campaign_.batches[b].simulated.col(c) + campaign_.part(gap, b));
+      result.emplace_back();
+      for (std::size_t b = 0; b < campaign_.batches.size(); ++b) {
+        const MatrixX<Scalar>& simulated = campaign_.batches[b].simulated;
+        result.back().push_back(simulated.col(c) + campaign_.part(gap, b));
+      }
     }
-    OutputTraces traces(campaign_, options_.reference_degC, std::move(predicted));
+    return result;
+  }
+
+  /// Weighs the traces of all effects anew.
+  void scan() {
+    OutputTraces traces(campaign_, options_.reference_degC, calibrated_displacements());
     for (const auto& effect : library_.all())
       if (wanted(effect->name())) traces.add(*effect);
-    traces_ = traces.take();
-    scores_.assign(traces_.size(), {});
-    in_parallel(traces_.size(), options_.threads,
-                [&](std::size_t i) { scores_[i] = score_of(i, traces_[i], channels_, campaign_); });
-    std::sort(scores_.begin(), scores_.end(), [](const TraceScore& a, const TraceScore& b) {
+    scan_.traces = traces.take();
+    scan_.scores.assign(scan_.traces.size(), {});
+    in_parallel(scan_.traces.size(), options_.threads,
+                [&](std::size_t i) { scan_.scores[i] = score_of<Scalar>(i, scan_.traces[i], channels_, campaign_); });
+    std::sort(scan_.scores.begin(), scan_.scores.end(), [](const TraceScore& a, const TraceScore& b) {
       return a.gain != b.gain ? a.gain > b.gain : a.trace < b.trace;
     });
   }
 
-  /// Where a trace lies: its own location, else the sensor in which it shows most.
-  std::string location_of(const TraceScore& score) const {
-    const OutputTrace& trace = traces_[score.trace];
-    if (!trace.location.empty()) return trace.location;
-    const ChannelScore* strongest = strongest_sensor(score, campaign_.temperatures);
-    return strongest ? name(strongest->channel) : "";
-  }
-
-  /// A hypothesis: the best variant of an effect at a place.
-  struct Suspect {
-    const TraceScore* score = nullptr;
-    std::string effect, location, driver;
-    double probability = 0;
-  };
-
-  std::vector<Suspect> candidates() const {
-    std::vector<Suspect> found;
-    for (const TraceScore& score : scores_) {
-      const OutputTrace& trace = traces_[score.trace];
-      if (score.implausible) continue;
-      const std::string location = location_of(score);
-      const bool known = std::any_of(found.begin(), found.end(), [&](const Suspect& one) {
-        return one.effect == trace.effect && one.location == location && one.driver == trace.driver;
-      });
-      if (!known) found.push_back({&score, trace.effect, location, trace.driver, 0});
-    }
-    if (found.empty()) return found;
-    // The traces are approximations: differences below a few percent of the evidence decide nothing.
-    const double softness = std::max(3., .03 * found[0].score->gain);
-    double sum = std::exp(std::min(0., (options_.decisive_nats - found[0].score->gain) / softness));
-    for (Suspect& one : found) sum += one.probability = std::exp((one.score->gain - found[0].score->gain) / softness);
-    for (Suspect& one : found) one.probability *= .99 / sum;
-    return found;
-  }
-
   /// A heat flow that leaves the displacement at its noise explains nothing worth naming.
   bool matters(const TraceScore& score) const {
-    if (score.channels.size() == 1) {
-      const PairedChannel& one = channels_[static_cast<std::size_t>(score.channels[0].channel)];
-      return score.channels[0].contribution > 3 * one.noise;
-    }
-    const PairedChannel& output = channels_[static_cast<std::size_t>(headline())];
-    return output.as_simulated > 1.7 * output.noise;
+    if (score.channels.size() == 1)
+      return score.channels[0].contribution >
+             limits_.least_contribution_noises * channel(score.channels[0].channel).noise;
+    const PairedChannel& output = channel(headline());
+    return output.as_simulated > limits_.none_below_noises * output.noise;
   }
 
   /// Takes the best effect if it is decisive; returns whether another round makes sense.
-  bool decide(int round) {
-    const std::vector<Suspect> found = candidates();
-    if (round == 0) note_ruled_out(found);
-    // What a first effect leaves is also the mismatch of its approximate trace: a further one must be clearer.
-    const double needed = (round ? 2 : 1) * options_.decisive_nats;
-    if (found.empty() || found[0].score->gain < needed || !matters(*found[0].score)) return false;
+  bool take_best(bool further) {
+    const std::vector<Suspect> found = suspects_of(scan_, campaign_, limits_);
+    if (!further) note_ruled_out(found);
+    const double needed = (further ? limits_.further : 1) * limits_.decisive_nats;
+    if (found.empty() || found[0].gain < needed || !matters(*found[0].score)) return false;
     const Suspect& best = found[0];
-    if (round > 0 && is_rival(best)) return false;
-    const OutputTrace& trace = traces_[best.score->trace];
+    if (further && is_rival(best)) return false;
+    const OutputTrace& trace = scan_.trace_of(*best.score);
     const std::vector<PairedChannel> before = channels_;
     add_to_basis(trace);
-    if (round > 0 && !improves(before, *best.score)) {
+    if (further && !improves(before, *best.score)) {
       channels_ = before;
       return false;
     }
-    FoundEffect effect = named(trace, best.location, 0);
+    FoundEffect effect = named(best, 0);
     for (const Suspect& one : found) {
       const bool same = one.effect == best.effect && one.driver == best.driver;
       if (same) effect.confidence += one.probability;
-      if (&one == &best || one.probability < .05) continue;
+      if (&one == &best || one.probability < options_.shared.listed) continue;
       if (same)
         effect.same_place.push_back(one.location);
       else
         effect.alternatives.push_back({one.effect, one.location, one.driver, one.probability});
     }
-    const ChannelScore& first = best.score->channels[0];
-    if (best.score->channels.size() == 1 && !trace.unit_strength)
-      effect.parameters.push_back(
-          {trace.strength.name, trace.strength.unit, first.coefficients(0), first.standard_errors(0)});
-    if (best.score->channels.size() > 1)
-      if (const ChannelScore* most = strongest_sensor(*best.score, campaign_.temperatures))
-        effect.parameters.push_back({"rms_on_" + name(most->channel) + "_K", "K", most->contribution, -1});
-    if (round == 0) {
+    if (!further) {
       stage_ = trace.stage;
-      told_ = best.score->channels.size() == 1 ? first.channel : headline();
+      told_ = best.score->channels.size() == 1 ? best.score->channels[0].channel : headline();
     }
     result_.effects.push_back(std::move(effect));
     return true;
   }
 
-  FoundEffect named(const OutputTrace& trace, const std::string& location, double confidence) const {
+  /// An entry of the diagnosis: what is fixed in the trace, then its strength, or where many channels answer, how large
+  /// it is in the one that shows it most.
+  FoundEffect named(const Suspect& suspect, double confidence) const {
+    const TraceScore& score = *suspect.score;
+    const OutputTrace& trace = scan_.trace_of(score);
     const Effect& effect = library_.at(trace.effect);
     FoundEffect result;
     result.effect = trace.effect;
-    result.location = location;
+    result.location = suspect.location;
     result.driver = trace.driver;
     result.confidence = confidence;
     for (const TraceNumber& one : trace.shape) result.parameters.push_back({one.name, one.unit, one.value, -1});
+    const ChannelScore& first = score.channels[0];
+    if (score.channels.size() == 1 && !trace.unit_strength)
+      result.parameters.push_back(
+          {trace.strength.name, trace.strength.unit, first.coefficients(0), first.standard_errors(0)});
+    if (score.channels.size() > 1)
+      if (const ChannelScore* most = strongest_sensor(score, campaign_.temperatures))
+        result.parameters.push_back({"rms_on_" + name(most->channel) + "_K", "K", most->contribution, -1});
     result.meaning = effect.meaning();
     result.against_as_given = effect.calibration_does_the_same();
     return result;
   }
 
-  bool is_rival(const Suspect& candidate) const {
+  bool is_rival(const Suspect& suspect) const {
     for (const FoundEffect& found : result_.effects)
       for (const Rival& rival : found.alternatives)
-        if (rival.effect == candidate.effect && rival.location == candidate.location) return true;
+        if (rival.effect == suspect.effect && rival.location == suspect.location) return true;
     return false;
   }
 
-  /// A further effect must lower the held-out gap where it counts: by a fifth in the displacement, by half in a sensor.
+  /// A further effect must lower the held-out gap where it counts: in the displacement, or in its own thermometer.
   bool improves(const std::vector<PairedChannel>& before, const TraceScore& score) const {
-    const std::size_t output = static_cast<std::size_t>(headline());
-    if (channels_[output].calibrated < .8 * before[output].calibrated) return true;
-    const std::size_t own = static_cast<std::size_t>(score.channels[0].channel);
-    return score.channels.size() == 1 && channels_[own].calibrated < .5 * before[own].calibrated;
+    const auto lowers = [&](Index c, double to) {
+      return channel(c).calibrated < to * before[static_cast<std::size_t>(c)].calibrated;
+    };
+    return lowers(headline(), limits_.helps_displacement) ||
+           (score.channels.size() == 1 && lowers(score.channels[0].channel, limits_.helps_thermometer));
   }
 
   /// The effect's columns join what is free, so that everything is refitted together.
   void add_to_basis(const OutputTrace& trace) {
     for (const Index c : trace.channels) {
       PairedChannel& one = channel(c);
-      const TracePrior prior(trace, one);
-      const Matrix scaled = trace.columns * prior.scale.cwiseInverse().asDiagonal();
-      one.gap -= scaled * prior.mean;
-      Matrix regressors(scaled.rows(), one.basis.regressors.cols() + scaled.cols());
-      regressors << one.basis.regressors, scaled;
-      Vector sd(regressors.cols());
-      sd << one.basis.prior_sd, prior.sd;
+      const TracePrior<Scalar> prior(trace, one);
+      const MatrixX<Scalar>&columns = trace.columns, &known = one.basis.regressors;
+      const VectorX<Scalar>&scale = prior.scale, &mean = prior.mean, &known_sd = one.basis.prior_sd, &own_sd = prior.sd;
+      const MatrixX<Scalar> scaled = columns * scale.cwiseInverse().asDiagonal();
+      VectorX<Scalar>& gap = one.gap;
+      gap -= scaled * mean;
+      MatrixX<Scalar> regressors(scaled.rows(), known.cols() + scaled.cols());
+      regressors << known, scaled;
+      VectorX<Scalar> sd(regressors.cols());
+      sd << known_sd, own_sd;
       one.basis.regressors = std::move(regressors);
       one.basis.prior_sd = std::move(sd);
-      judge_calibration(campaign_, one);
+      judge_calibration<Scalar>(campaign_, one);
     }
   }
 
+  /// What the best leaves behind, once an effect; then what cannot be its effect wherever it acts.
   void note_ruled_out(const std::vector<Suspect>& found) {
-    std::vector<std::string> named;
+    std::vector<std::string> noted;
+    const auto is_noted = [&](const std::string& effect) {
+      return std::find(noted.begin(), noted.end(), effect) != noted.end();
+    };
     for (const Suspect& one : found) {
-      if (one.probability >= .05 || std::count(named.begin(), named.end(), one.effect) > 0) continue;
-      named.push_back(one.effect);
+      if (one.probability >= options_.shared.listed || is_noted(one.effect)) continue;
+      noted.push_back(one.effect);
       if (one.effect == found[0].effect) continue;
-      const bool no_better = one.score->gain < options_.decisive_nats;
+      const bool no_better = one.gain < limits_.decisive_nats;
       result_.ruled_out.push_back({one.effect, one.location, no_better ? RuledOutBy::calibration : RuledOutBy::evidence,
-                                   no_better ? one.score->gain : found[0].score->gain - one.score->gain});
+                                   no_better ? one.gain : found[0].gain - one.gain});
     }
-    for (const TraceScore& score : scores_) {
-      const OutputTrace& trace = traces_[score.trace];
-      if (!score.implausible || std::count(named.begin(), named.end(), trace.effect) > 0) continue;
-      if (std::any_of(found.begin(), found.end(), [&](const Suspect& one) { return one.effect == trace.effect; }))
-        continue;
-      named.push_back(trace.effect);
+    for (const TraceScore& score : scan_.scores) {
+      const std::string& effect = scan_.trace_of(score).effect;
+      if (!score.implausible || is_noted(effect)) continue;
+      if (std::any_of(found.begin(), found.end(), [&](const Suspect& one) { return one.effect == effect; })) continue;
+      noted.push_back(effect);
       result_.ruled_out.push_back(
-          {trace.effect, location_of(score), *score.implausible, score.channels[0].coefficients(0)});
+          {effect, location_of(scan_, score, campaign_), *score.implausible, score.channels[0].coefficients(0)});
     }
   }
 
@@ -288,58 +282,52 @@ class PairedDiagnosis {
   bool leaves_too_much() const {
     double before = 0, after = 0;
     for (Index c = 0; c < campaign_.channel_count(); ++c) {
-      const PairedChannel& one = channels_[static_cast<std::size_t>(c)];
+      const PairedChannel& one = channel(c);
       if (!campaign_.is_output(c) || one.noise <= 0) continue;
       before += std::max(0., std::pow(first_[static_cast<std::size_t>(c)].calibrated / one.noise, 2) - 1);
       after += std::max(0., std::pow(one.calibrated / one.noise, 2) - 1);
     }
     const double outputs = static_cast<double>(campaign_.channel_count());
-    return after > 15 * outputs && after > .3 * before;
+    return after > limits_.left_per_channel * outputs && after > limits_.left_share * before;
   }
 
-  /// The gap that is told must shrink on batches left out (an offset: against the simulator as given), else the effect
-  /// explains something else.
+  /// The gap that is told must shrink on batches left out, else the effect explains something else.
   bool told_gap_shrinks() const {
-    Diagnosis trial;
-    trial.effects = result_.effects;
-    OutputViews(campaign_, library_, first_, channels_, told_, options_.seed).tell(trial);
-    const GapLevels& rms = trial.gap.rms;
-    return rms.with_effect < (trial.effects[0].against_as_given ? rms.as_simulated : rms.calibrated);
+    const PairedChannel& before = first_[static_cast<std::size_t>(told_)];
+    const double with_effect = rms_of<Scalar>(held_out_gap<Scalar>(campaign_, channel(told_)));
+    return with_effect < (result_.effects[0].against_as_given
+                              ? rms_of<Scalar>(before.gap)
+                              : rms_of<Scalar>(held_out_gap<Scalar>(campaign_, before)));
   }
-
-  /// What a thermometer may be off because of where it sits; beside a gap without a name, smaller faults are not told.
-  static constexpr double placement_tolerance_K = .5;
 
   /// A fault of a thermometer shows in its own reading alone, so that reading judges it whatever has no name elsewhere.
-  /// Names the decisive one that closes a third of its own gap and beats there whatever else could act on that reading.
-  /// An offset counts against the simulator as given, since calibration moves offsets too.
+  /// Names the decisive one that closes a good part of its own gap and beats there whatever else could act on that
+  /// reading.
   bool name_sensor_fault() {
     channels_ = first_;
     scan();
-    for (const TraceScore& score : scores_) {
-      const OutputTrace& trace = traces_[score.trace];
-      const bool sensor =
+    for (const TraceScore& score : scan_.scores) {
+      const OutputTrace& trace = scan_.trace_of(score);
+      const bool thermometer =
           trace.stage == Stage::measurement && trace.channels.size() == 1 && trace.channels[0] < campaign_.temperatures;
-      if (score.gain < options_.decisive_nats) break;
-      if (!sensor || score.implausible || score.channels[0].contribution < placement_tolerance_K) continue;
+      if (score.gain < limits_.decisive_nats) break;
+      if (!thermometer || score.implausible || score.channels[0].contribution < limits_.placement_tolerance_K) continue;
       const Index own = trace.channels[0];
-      std::vector<Suspect> rivals = candidates_in(own);
+      std::vector<Suspect> rivals = suspects_in(own, scan_, campaign_, limits_);
       if (rivals.empty() || rivals[0].score != &score) continue;
       const double before =
           library_.at(trace.effect).calibration_does_the_same() ? channel(own).as_simulated : channel(own).calibrated;
       add_to_basis(trace);
-      if (channel(own).calibrated > .67 * before) {
+      if (channel(own).calibrated > limits_.fault_leaves * before) {
         channels_ = first_;
         continue;
       }
-      FoundEffect effect = named(trace, name(own), rivals[0].probability);
+      rivals[0].location = name(own);
+      FoundEffect effect = named(rivals[0], rivals[0].probability);
       for (std::size_t i = 1; i < rivals.size(); ++i)
-        if (rivals[i].probability >= .05 && rivals[i].effect != trace.effect)
+        if (rivals[i].probability >= options_.shared.listed && rivals[i].effect != trace.effect)
           effect.alternatives.push_back(
               {rivals[i].effect, rivals[i].location, rivals[i].driver, rivals[i].probability});
-      if (!trace.unit_strength)
-        effect.parameters.push_back({trace.strength.name, trace.strength.unit, score.channels[0].coefficients(0),
-                                     score.channels[0].standard_errors(0)});
       result_.effects = {std::move(effect)};
       stage_ = trace.stage;
       told_ = own;
@@ -349,76 +337,71 @@ class PairedDiagnosis {
     return false;
   }
 
-  /// Effects by what they are worth in one channel, each at its best there; strongest first.
-  std::vector<Suspect> candidates_in(Index own) const {
-    std::vector<Suspect> found;
-    std::vector<double> gains;
-    for (const TraceScore& score : scores_)
-      for (const ChannelScore& part : score.channels) {
-        if (part.channel != own || score.implausible) continue;
-        const OutputTrace& trace = traces_[score.trace];
-        std::size_t at = 0;
-        while (at < found.size() && found[at].effect != trace.effect) ++at;
-        if (at == found.size()) {
-          found.push_back({&score, trace.effect, location_of(score), trace.driver, 0});
-          gains.push_back(part.gain);
-        } else if (part.gain > gains[at]) {
-          found[at] = {&score, trace.effect, location_of(score), trace.driver, 0};
-          gains[at] = part.gain;
-        }
-      }
-    if (found.empty()) return found;
-    const double best = *std::max_element(gains.begin(), gains.end()), softness = std::max(3., .03 * best);
-    double sum = std::exp(std::min(0., (options_.decisive_nats - best) / softness));
-    for (std::size_t i = 0; i < found.size(); ++i) sum += found[i].probability = std::exp((gains[i] - best) / softness);
-    for (Suspect& one : found) one.probability *= .99 / sum;
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Suspect& a, const Suspect& b) { return a.probability > b.probability; });
-    return found;
+  /// What the gap that is told says where nothing is named.
+  Verdict verdict_of_levels() const {
+    const PairedChannel& one = channel(told_);
+    if (one.as_simulated < limits_.none_below_noises * one.noise) return Verdict::none;
+    const bool closed = one.calibrated < limits_.closed_below_noises * one.noise,
+               nearly = one.calibrated < limits_.nearly_closed_noises * one.noise &&
+                        one.calibrated < limits_.calibration_left * one.as_simulated;
+    return closed || nearly ? Verdict::miscalibration : Verdict::unknown;
   }
 
-  void finish() {
-    if (result_.effects.empty()) {
-      told_ = headline();
-      const PairedChannel& one = channel(told_);
-      result_.verdict =
-          one.as_simulated < 1.7 * one.noise ? Verdict::none
-          : one.calibrated < 2 * one.noise || (one.calibrated < 4 * one.noise && one.calibrated < .4 * one.as_simulated)
-              ? Verdict::miscalibration
-              : Verdict::unknown;
-    } else if (leaves_too_much() || !told_gap_shrinks()) {
+  /// Drops what held-out batches do not bear out, looks for a faulty thermometer beside a gap without a name, decides
+  /// the verdict and tells the rest.
+  void conclude() {
+    const bool taken_back = !result_.effects.empty() && (leaves_too_much() || !told_gap_shrinks());
+    if (taken_back) {
       const FoundEffect& nearest = result_.effects[0];
-      result_.verdict = Verdict::unknown;
-      result_.ruled_out.insert(result_.ruled_out.begin(), {nearest.effect, nearest.location, RuledOutBy::remains});
+      result_.ruled_out.insert(result_.ruled_out.begin(), {nearest.effect, nearest.location, RuledOutBy::remains, 0});
       result_.effects.clear();
-    } else {
-      result_.verdict = result_.effects[0].alternatives.empty() ? Verdict::effect : Verdict::ambiguous;
     }
+    if (result_.effects.empty() && !taken_back) told_ = headline();
+    Verdict unnamed = Verdict::unknown;
     std::vector<std::string> beside;
-    if (result_.verdict == Verdict::unknown && name_sensor_fault()) {
-      result_.verdict = result_.effects[0].alternatives.empty() ? Verdict::effect : Verdict::ambiguous;
-      for (Index c = 0; c < campaign_.channel_count(); ++c)
-        if (c != told_ && campaign_.is_output(c) && channel(c).calibrated > 2 * channel(c).noise)
-          beside.push_back(name(c));
+    if (result_.effects.empty()) {
+      if (!taken_back) unnamed = verdict_of_levels();
+      if (unnamed == Verdict::unknown && name_sensor_fault())
+        for (Index c = 0; c < campaign_.channel_count(); ++c)
+          if (c != told_ && campaign_.is_output(c) &&
+              channel(c).calibrated > limits_.closed_below_noises * channel(c).noise)
+            beside.push_back(name(c));
     }
-    if (campaign_.batches.size() < 3 && !result_.effects.empty()) {
-      result_.verdict = Verdict::ambiguous;  // a suspicion: too few batches to judge by
+    const bool named = !result_.effects.empty(), few = campaign_.batches.size() < options_.shared.proving_folds;
+    if (named && few)
       for (FoundEffect& one : result_.effects) one.confidence = std::min(one.confidence, .5);
-    }
-    OutputViews(campaign_, library_, first_, channels_, told_, options_.seed).tell(result_);
-    if (!beside.empty())
-      result_.weaker_claims.push_back({WeakerClaim::Kind::gap_beside, "", "", beside, campaign_.batches.size()});
-    if (!result_.effects.empty()) result_.where.stages.push_back({word_of(stage_), 1});
+    const bool rivals = named && !result_.effects[0].alternatives.empty();
+    result_.verdict = !named ? unnamed : few || rivals ? Verdict::ambiguous : Verdict::effect;
+    tell(beside);
   }
 
-  PairedOptions options_;
+  void tell(const std::vector<std::string>& beside) {
+    result_.simulator = SimulatorKind::outputs;
+    double hours = 0;
+    for (const PairedBatch& batch : campaign_.batches) {
+      result_.batches.push_back(batch.name);
+      hours = std::max(hours, batch.time_s(batch.time_s.size() - 1) / 3600);
+    }
+    const bool named = !result_.effects.empty();
+    const OutputViews<Scalar> views(campaign_, first_, channels_, named, told_);
+    result_.gap = views.gap(options_.seed);
+    result_.where = views.where();
+    if (named) result_.where.stages.push_back({word_of(stage_), 1});
+    result_.remaining = views.remaining(result_.gap.rms, options_.seed);
+    result_.data_problems = pairing_problems(campaign_);
+    result_.weaker_claims = claims_of_outputs<Scalar>(campaign_, beside);
+    result_.next_experiment =
+        named ? experiment_by_kind(result_.effects[0], library_, hours) : experiment_without_rivals(result_, hours);
+  }
+
+  const OutputsOptions& options_;
+  const OutputThresholds& limits_;
   const EffectLibrary& library_;
   PairedCampaign campaign_;
-  Drives drives_;
+  Drives<Scalar> drives_;
   std::vector<PairedChannel> channels_;
   std::vector<PairedChannel> first_;  ///< with calibration alone
-  std::vector<OutputTrace> traces_;
-  std::vector<TraceScore> scores_;
+  OutputScan scan_;
   Stage stage_ = Stage::heat;
   Index told_ = 0;  ///< the channel the gap is told for: the effect's own where it acts on one, else the headline
   Diagnosis result_;
@@ -426,16 +409,21 @@ class PairedDiagnosis {
 
 }  // namespace detail
 
-/// Diagnoses the gap between measured batches and a simulator's output for them, paired by name.
+/// Diagnoses the gap between measured batches and a simulator's output for them, paired by name. The result is
+/// complete.
 ///
-/// Every effect of the library acts through the trace it would leave in the outputs, given inputs, measured
-/// temperatures and time; what the simulator's own parameters could change (gains and lags of each drive's
-/// contribution, learnt from the simulated courses) is free in every comparison. An effect is named when its evidence
-/// beats calibration by `decisive_nats`; the gap before and after is that of batches left out. Throws Error when the
-/// two sides do not pair.
-inline Diagnosis diagnose_paired(const Campaign& real, const Campaign& sim, const EffectLibrary& library,
-                                 const PairedOptions& options = {}) {
-  return detail::PairedDiagnosis(real, sim, library, options).run();
+/// Every effect of `library` acts through the trace it would leave in the outputs, given inputs, measured temperatures
+/// and time; what the simulator's own parameters could change (gains and lags of each drive's contribution, learnt from
+/// the simulated courses) is free in every comparison. An effect is named when its evidence beats calibration by
+/// `decisive_nats`; the gap before and after is that of batches left out. Throws Error when the two sides do not pair.
+/// Allocates.
+template <typename Scalar = double>
+Diagnosis diagnose_outputs(const Campaign& real, const Campaign& simulated, const EffectLibrary& library,
+                           const OutputsOptions& options = {}) {
+  return detail::OutputsDiagnosis<Scalar>(real, simulated, library, options).run();
 }
+
+THERMFIT_COMPILED_TEMPLATE(Diagnosis diagnose_outputs<double>(const Campaign&, const Campaign&, const EffectLibrary&,
+                                                              const OutputsOptions&));
 
 }  // namespace thermfit

@@ -26,10 +26,11 @@ struct PairedChannel {
 };
 
 /// Lag-1 correlation of each batch's series around zero, 0 … .98.
-inline double lag_one_correlation(const PairedCampaign& campaign, const Vector& stack) {
+template <typename Scalar = double>
+double lag_one_correlation(const PairedCampaign& campaign, const VectorX<Scalar>& stack) {
   double product = 0, square = 0;
   for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
-    const Vector values = campaign.part(stack, b);
+    const VectorX<Scalar> values = campaign.part(stack, b);
     square += values.squaredNorm();
     product += values.head(values.size() - 1).dot(values.tail(values.size() - 1));
   }
@@ -38,14 +39,15 @@ inline double lag_one_correlation(const PairedCampaign& campaign, const Vector& 
 
 /// Every batch predicted from the others: gap minus regressors times the coefficients fitted without it. With a single
 /// batch, the residual of the fit itself.
-inline Vector held_out_residual(const PairedCampaign& campaign, const Matrix& regressors, const Vector& gap,
-                                const Vector& prior_sd, double noise) {
-  const Matrix all = cross_products(regressors, gap);
-  Vector residual(gap.size());
+template <typename Scalar = double>
+VectorX<Scalar> held_out_residual(const PairedCampaign& campaign, const MatrixX<Scalar>& regressors,
+                                  const VectorX<Scalar>& gap, const VectorX<Scalar>& prior_sd, double noise) {
+  const MatrixX<Scalar> all = cross_products(regressors, gap);
+  VectorX<Scalar> residual(gap.size());
   for (std::size_t b = 0; b < campaign.batches.size(); ++b) {
-    const Matrix own_regressors = campaign.part(regressors, b);
-    const Vector own_gap = campaign.part(gap, b);
-    Matrix others = all;
+    const MatrixX<Scalar> own_regressors = campaign.part(regressors, b);
+    const VectorX<Scalar> own_gap = campaign.part(gap, b);
+    MatrixX<Scalar> others = all;
     if (campaign.batches.size() > 1) others -= cross_products(own_regressors, own_gap);
     campaign.part(residual, b) = own_gap - own_regressors * fit_with_prior(others, prior_sd, noise).coefficients;
   }
@@ -59,7 +61,9 @@ struct Evidence {
   double noise = 0;  ///< weight of a sample at the best level
 };
 
-inline Evidence profiled_evidence(const PairedChannel& channel, const Matrix& products, const Vector& prior_sd) {
+template <typename Scalar = double>
+Evidence profiled_evidence(const PairedChannel& channel, const MatrixX<Scalar>& products,
+                           const VectorX<Scalar>& prior_sd) {
   Evidence best{-1e300, 0};
   const double spread = std::sqrt(channel.correlation);
   const double counted = static_cast<double>(channel.gap.size()) / channel.correlation;
@@ -73,20 +77,23 @@ inline Evidence profiled_evidence(const PairedChannel& channel, const Matrix& pr
 }
 
 /// Fits calibration alone to a channel, until the weight of a sample has settled.
-inline void judge_calibration(const PairedCampaign& campaign, PairedChannel& channel) {
-  channel.products = cross_products(channel.basis.regressors, channel.gap);
-  if (channel.calibrated == 0) channel.calibrated = .3 * rms_of(channel.gap) + 1e-6;
+template <typename Scalar = double>
+void judge_calibration(const PairedCampaign& campaign, PairedChannel& channel) {
+  const MatrixX<Scalar>& regressors = channel.basis.regressors;
+  const VectorX<Scalar>&gap = channel.gap, &prior_sd = channel.basis.prior_sd;
+  channel.products = cross_products(regressors, gap);
+  if (channel.calibrated == 0) channel.calibrated = .3 * rms_of<Scalar>(gap) + 1e-6;
   for (int round = 0; round < 3; ++round) {
-    const Vector left = held_out_residual(campaign, channel.basis.regressors, channel.gap, channel.basis.prior_sd,
-                                          channel.calibrated * std::sqrt(channel.correlation));
-    channel.calibrated = rms_of(left) + 1e-6;
+    const VectorX<Scalar> left = held_out_residual<Scalar>(campaign, regressors, gap, prior_sd,
+                                                           channel.calibrated * std::sqrt(channel.correlation));
+    channel.calibrated = rms_of<Scalar>(left) + 1e-6;
     std::vector<Vector> parts;
     for (std::size_t b = 0; b < campaign.batches.size(); ++b) parts.push_back(campaign.part(left, b));
     channel.noise = std::max(white_noise(parts), channel.resolution);
-    const double rho = lag_one_correlation(campaign, left);
+    const double rho = lag_one_correlation<Scalar>(campaign, left);
     channel.correlation = std::min((1 + rho) / (1 - rho), 6.);
   }
-  channel.evidence = profiled_evidence(channel, channel.products, channel.basis.prior_sd).log;
+  channel.evidence = profiled_evidence<Scalar>(channel, channel.products, prior_sd).log;
 }
 
 }  // namespace thermfit

@@ -33,46 +33,54 @@ struct TraceScore {
 
 /// Prior of a trace's coefficients where its columns are scaled to rms one: free ones may be three times what the
 /// channel shows; a law of unit strength has 1 +- 10 %.
+template <typename Scalar = double>
 struct TracePrior {
-  Vector mean, sd, scale;
+  VectorX<Scalar> mean, sd, scale;
 
   TracePrior(const OutputTrace& trace, const PairedChannel& channel) {
-    const Index columns = trace.columns.cols();
-    scale = (trace.columns.colwise().squaredNorm().transpose() / static_cast<double>(trace.columns.rows()))
+    const MatrixX<Scalar>& regressors = trace.columns;
+    const Index columns = regressors.cols();
+    scale = (regressors.colwise().squaredNorm().transpose() / static_cast<double>(regressors.rows()))
                 .cwiseSqrt()
                 .cwiseMax(1e-12);
     const double wide = 3 * std::max(channel.as_simulated, channel.calibrated) + 1e-9;
-    sd = trace.unit_strength ? Vector(.1 * scale) : Vector::Constant(columns, wide);
-    mean = trace.unit_strength ? scale : Vector::Zero(columns);
+    sd = trace.unit_strength ? VectorX<Scalar>(.1 * scale) : VectorX<Scalar>::Constant(columns, wide);
+    mean = trace.unit_strength ? scale : VectorX<Scalar>::Zero(columns);
   }
 };
 
-inline ChannelScore score_in(const OutputTrace& trace, const PairedChannel& channel, Index index) {
-  const TracePrior prior(trace, channel);
-  const Index columns = prior.scale.size(), known = channel.basis.prior_sd.size();
-  const Matrix scaled = trace.columns * prior.scale.cwiseInverse().asDiagonal();
-  const Vector gap = channel.gap - scaled * prior.mean;
-  Matrix products(known + columns + 1, known + columns + 1);  // calibration, trace, gap
-  products.topLeftCorner(known, known) = channel.products.topLeftCorner(known, known);
+template <typename Scalar = double>
+ChannelScore score_in(const OutputTrace& trace, const PairedChannel& channel, Index index) {
+  const TracePrior<Scalar> prior(trace, channel);
+  const MatrixX<Scalar>&regressors = trace.columns, &calibration = channel.basis.regressors,
+        &known_products = channel.products;
+  const VectorX<Scalar>&all = channel.gap, &known_sd = channel.basis.prior_sd;
+  const Index columns = prior.scale.size(), known = known_sd.size();
+  const MatrixX<Scalar> scaled = regressors * prior.scale.cwiseInverse().asDiagonal();
+  const VectorX<Scalar> gap = all - scaled * prior.mean;
+  MatrixX<Scalar> products(known + columns + 1, known + columns + 1);  // calibration, trace, gap
+  products.topLeftCorner(known, known) = known_products.topLeftCorner(known, known);
   products.block(known, known, columns, columns).noalias() = scaled.transpose() * scaled;
-  products.block(0, known, known, columns).noalias() = channel.basis.regressors.transpose() * scaled;
+  products.block(0, known, known, columns).noalias() = calibration.transpose() * scaled;
   products.block(0, known + columns, known, 1) =
-      channel.products.topRightCorner(known, 1) - products.block(0, known, known, columns) * prior.mean;
+      known_products.topRightCorner(known, 1) - products.block(0, known, known, columns) * prior.mean;
   products.block(known, known + columns, columns, 1).noalias() = scaled.transpose() * gap;
   products(known + columns, known + columns) = gap.squaredNorm();
-  products.triangularView<Eigen::StrictlyLower>() = products.transpose();
+  products.template triangularView<Eigen::StrictlyLower>() = products.transpose();
 
-  Vector prior_sd(known + columns);
-  prior_sd << channel.basis.prior_sd, prior.sd;
-  const Evidence evidence = profiled_evidence(channel, products, prior_sd);
+  VectorX<Scalar> prior_sd(known + columns);
+  prior_sd << known_sd, prior.sd;
+  const Evidence evidence = profiled_evidence<Scalar>(channel, products, prior_sd);
   const PriorFit fit = fit_with_prior(products, prior_sd, evidence.noise, true);
-  const Vector tail = fit.coefficients.tail(columns) + prior.mean;
-  const Vector fitted = scaled * tail;
+  const VectorX<Scalar>& coefficients = fit.coefficients;
+  const MatrixX<Scalar>& covariance = fit.covariance;
+  const VectorX<Scalar> tail = coefficients.tail(columns) + prior.mean;
+  const VectorX<Scalar> fitted = scaled * tail;
   ChannelScore score{index,
                      evidence.log - channel.evidence,
                      tail.cwiseQuotient(prior.scale),
-                     fit.covariance.diagonal().tail(columns).cwiseSqrt().cwiseQuotient(prior.scale),
-                     rms_of(fitted),
+                     covariance.diagonal().tail(columns).cwiseSqrt().cwiseQuotient(prior.scale),
+                     rms_of<Scalar>(fitted),
                      0};
   if (score.contribution > 0)
     score.direction = fitted.dot(scaled.col(std::min<Index>(1, columns - 1))) /
@@ -92,7 +100,8 @@ inline const ChannelScore* strongest_sensor(const TraceScore& score, Index tempe
 inline bool same_node(const PairedCampaign& campaign, Index a, Index b) {
   if (a == b) return true;
   for (const PairedBatch& batch : campaign.batches)
-    if ((batch.simulated.col(a) - batch.simulated.col(b)).cwiseAbs().maxCoeff() > 1e-6) return false;
+    for (Index k = 0; k < batch.simulated.rows(); ++k)
+      if (std::abs(batch.simulated(k, a) - batch.simulated(k, b)) > 1e-6) return false;
   return true;
 }
 
@@ -128,12 +137,13 @@ inline std::optional<RuledOutBy> why_implausible(const OutputTrace& trace, const
   return std::nullopt;
 }
 
-inline TraceScore score_of(std::size_t index, const OutputTrace& trace, const std::vector<PairedChannel>& channels,
-                           const PairedCampaign& campaign) {
+template <typename Scalar = double>
+TraceScore score_of(std::size_t index, const OutputTrace& trace, const std::vector<PairedChannel>& channels,
+                    const PairedCampaign& campaign) {
   TraceScore score;
   score.trace = index;
   for (const Index channel : trace.channels) {
-    score.channels.push_back(score_in(trace, channels[static_cast<std::size_t>(channel)], channel));
+    score.channels.push_back(score_in<Scalar>(trace, channels[static_cast<std::size_t>(channel)], channel));
     score.gain += score.channels.back().gain;
   }
   score.implausible = why_implausible(trace, score, campaign);

@@ -10,6 +10,7 @@
 
 #include "thermfit/compiled.hpp"
 #include "thermfit/diagnosis/judgement/judge.hpp"
+#include "thermfit/diagnosis/leading_channel.hpp"
 #include "thermfit/diagnosis/where/chain.hpp"
 #include "thermfit/diagnosis/where/conditions.hpp"
 #include "thermfit/diagnosis/where/periods.hpp"
@@ -32,22 +33,16 @@ std::vector<Vector> without_missing(const SeriesByBatch& residual) {
   return result;
 }
 
-/// The channel that views of a single course speak of: the first displacement, else the temperature with the largest
-/// gap. Allocates.
+/// The channel that views of a single course speak of, see leading_channel(). Allocates.
 template <typename Scalar = double>
 std::size_t viewed_channel(const MachineRecord& seen, const ChannelResiduals& gap) {
-  std::size_t largest = 0;
-  double most = -1;
-  for (std::size_t c = 0; c < seen.channels.size(); ++c) {
-    if (seen.channels[c].displacement) return c;
-    double square = 0;
-    for (const VectorX<Scalar>& r : without_missing<Scalar>(gap[c])) square += r.squaredNorm();
-    if (square > most) {
-      most = square;
-      largest = c;
-    }
-  }
-  return largest;
+  const auto square = [&](std::size_t c) {
+    double sum = 0;
+    for (const VectorX<Scalar>& r : without_missing<Scalar>(gap[c])) sum += r.squaredNorm();
+    return sum;
+  };
+  return leading_channel(
+      seen.channels.size(), [&](std::size_t c) { return seen.channels[c].displacement; }, square);
 }
 
 namespace detail {
