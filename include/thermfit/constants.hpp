@@ -4,6 +4,7 @@
 
 namespace thermfit {
 
+/// Half the circumference of the unit circle.
 constexpr double pi = 3.14159265358979323846;
 
 /// 0 degC on the thermodynamic scale, K.

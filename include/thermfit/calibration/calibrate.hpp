@@ -44,20 +44,21 @@ std::vector<Identified> identified(const MapFit& fit) {
   return result;
 }
 
+/// How calibrate() searches.
 struct CalibrationOptions {
-  int starts = 3;          ///< the prior's means, then points drawn around them
-  std::uint64_t seed = 1;  ///< of the points drawn
-  double spread = 0.7;     ///< their distance from the means, in prior standard deviations
-  int most_iterations = 50;
+  int starts = 3;            ///< the prior's means, then points drawn around them
+  std::uint64_t seed = 1;    ///< of the points drawn
+  double spread = 0.7;       ///< their distance from the means, in prior standard deviations
+  int most_iterations = 50;  ///< of each start
 };
 
 /// The best of several fits, and whether the others found the same.
 struct Calibration {
-  MapFit fit;
-  std::vector<Identified> identified;  ///< by parameter
-  std::vector<double> log_posteriors;  ///< by start
-  int agreeing = 0;                    ///< starts that ended within one nat of the best
-  std::vector<SeriesByBatch> residual_before;
+  MapFit fit;                                  ///< the start with the largest log posterior
+  std::vector<Identified> identified;          ///< by parameter
+  std::vector<double> log_posteriors;          ///< by start
+  int agreeing = 0;                            ///< starts that ended within one nat of the best
+  std::vector<SeriesByBatch> residual_before;  ///< of the machine as it was given, by channel
 };
 
 /// Fits all parameters of `machine` to a campaign, from several starts. Throws Error as observations_of() and

@@ -15,32 +15,37 @@ namespace thermfit {
 
 /// A machine fitted to a campaign: maximum a posteriori values of all its parameters and the noise of every channel.
 struct MapFit {
-  ThermalNetwork prior;  ///< the machine before the data: the means of the priors, effects complete
-  std::vector<Parameter> parameters;
+  ThermalNetwork prior;               ///< the machine before the data: the means of the priors, effects complete
+  std::vector<Parameter> parameters;  ///< what was fitted
   Vector coordinates;                 ///< working coordinates: prior standard deviations from the prior's mean
   double prior_scale = 1;             ///< the machine's own priors are as wide as this times what its document says
   std::vector<ResidualNoise> noise;   ///< by channel
   std::vector<Simulation> simulated;  ///< without sensitivities
-  ChannelResiduals residual;
-  SummedEquations equations;
-  double log_likelihood = 0;
-  double log_posterior = 0;  ///< log_likelihood + log_prior(coordinates)
-  double log_evidence = 0;   ///< Laplace: log_posterior - log|J'R^-1 J + precision| / 2
-  int iterations = 0;
-  bool converged = false;
+  ChannelResiduals residual;          ///< measured minus simulated
+  SummedEquations equations;          ///< at the coordinates
+  double log_likelihood = 0;          ///< nats, without the constant of 2 pi
+  double log_posterior = 0;           ///< log_likelihood + log_prior(coordinates)
+  double log_evidence = 0;            ///< Laplace: log_posterior - log|J'R^-1 J + precision| / 2
+  int iterations = 0;                 ///< of Levenberg-Marquardt
+  bool converged = false;             ///< before they ran out
 
+  /// The parameters' values at working coordinates, in their own units. Allocates.
   Vector values(const Vector& at) const {
     Vector result(at.size());
     for (Index j = 0; j < at.size(); ++j) result(j) = parameter(j).value(at(j));
     return result;
   }
+  /// The machine at working coordinates. Allocates.
   ThermalNetwork network_at(const Vector& at) const { return with_values(prior, parameters, values(at)); }
+  /// The fitted machine. Allocates.
   ThermalNetwork network() const { return network_at(coordinates); }
+  /// d(value)/d(coordinate) of each parameter at the coordinates. Allocates.
   Vector slopes() const {
     Vector result(coordinates.size());
     for (Index j = 0; j < coordinates.size(); ++j) result(j) = parameter(j).slope(coordinates(j));
     return result;
   }
+  /// The parameter of coordinate j.
   const Parameter& parameter(Index j) const { return parameters[static_cast<std::size_t>(j)]; }
 
   /// Of the prior of each working coordinate.

@@ -32,7 +32,7 @@ Folds folds_of(const ThermalNetwork& network, const MachineRecord& seen, std::si
 
 /// What a model leaves on batches that did not take part in fitting it.
 struct HeldOut {
-  ChannelResiduals residual;
+  ChannelResiduals residual;         ///< measured minus predicted
   std::vector<ResidualNoise> noise;  ///< of this residual
   double log_score = 0;              ///< log predictive density of all channels
   Vector by_channel;                 ///< the same by channel

@@ -30,16 +30,18 @@ ChannelResiduals residuals_of(const Lazy<MachineRecord, Scalar>& seen,
 /// A model at a point, whitened: the residual and its derivatives with respect to the working coordinates t, of which a
 /// channel keeps only the columns that touch it (an offset touches one sensor).
 struct Linearized {
+  /// One channel in one batch.
   struct Block {
     Matrix jacobian;  ///< samples x active columns of d(simulated)/dt
-    Vector residual;
+    Vector residual;  ///< measured minus simulated
   };
+  /// One channel in all batches.
   struct Channel {
-    std::vector<Index> active;
-    std::vector<Block> batches;
+    std::vector<Index> active;   ///< parameters that touch it, increasing
+    std::vector<Block> batches;  ///< in the order of the campaign
   };
-  std::vector<Channel> channels;
-  Index parameters = 0;
+  std::vector<Channel> channels;  ///< in the order of the record
+  Index parameters = 0;           ///< how many there are in all
 };
 
 /// One whitener for every channel and batch.
@@ -93,10 +95,11 @@ THERMFIT_COMPILED_TEMPLATE(Linearized linearized<double>(const MachineRecord&, c
 
 /// Gauss-Newton normal equations: information J'J, score J'r, squares r'r.
 struct NormalEquations {
-  Matrix information;
-  Vector score;
-  double squares = 0;
+  Matrix information;  ///< J'J, parameters x parameters
+  Vector score;        ///< J'r
+  double squares = 0;  ///< r'r
 
+  /// Of nothing.
   explicit NormalEquations(Index parameters = 0)
       : information(Matrix::Zero(parameters, parameters)), score(Vector::Zero(parameters)) {}
 
@@ -111,6 +114,7 @@ struct NormalEquations {
     }
     squares += weight * part.squares;
   }
+  /// Adds equations in the same parameters.
   template <typename Scalar = double>
   NormalEquations& operator+=(const Lazy<NormalEquations, Scalar>& other) {
     information += other.information;
@@ -118,6 +122,7 @@ struct NormalEquations {
     squares += other.squares;
     return *this;
   }
+  /// Takes away equations in the same parameters.
   template <typename Scalar = double>
   NormalEquations& operator-=(const Lazy<NormalEquations, Scalar>& other) {
     information -= other.information;

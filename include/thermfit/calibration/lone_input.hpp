@@ -12,9 +12,10 @@
 
 namespace thermfit {
 
+/// An input and the one batch it is on in.
 struct LoneInput {
-  Index input = 0;
-  std::size_t batch = 0;
+  Index input = 0;        ///< column of Excitation::inputs
+  std::size_t batch = 0;  ///< in the order of the campaign
 };
 
 /// Inputs of the machine's heat sources and effects that are 0 in all batches but one. With fewer than three batches

@@ -18,23 +18,24 @@ namespace thermfit {
 
 /// One measured channel that the simulator predicts, over all batches.
 struct ObservedChannel {
-  std::string name;
-  bool displacement = false;  ///< um, else degC
-  Index column = 0;           ///< in Simulation::channels
-  SeriesByBatch measured;
+  std::string name;                        ///< of the column
+  bool displacement = false;               ///< um, else degC
+  Index column = 0;                        ///< in Simulation::channels
+  SeriesByBatch measured;                  ///< NaN where a value is missing
   std::vector<std::vector<char>> present;  ///< by batch and sample
   double swing = 0;                        ///< rms of the change since the first sample
   double floor = 0;                        ///< noise of the readings: repeats, else high frequency
-  NoiseBounds bounds;
+  NoiseBounds bounds;                      ///< of the noise of its residual
 };
 
 /// What a campaign says about a machine: what drove each batch and what its channels read.
 struct MachineRecord {
-  std::vector<std::string> names;  ///< of the batches
-  std::vector<Excitation> excitations;
-  std::vector<Vector> time_s;
-  std::vector<ObservedChannel> channels;
+  std::vector<std::string> names;         ///< of the batches
+  std::vector<Excitation> excitations;    ///< what drove each batch
+  std::vector<Vector> time_s;             ///< the clock of each batch, as read
+  std::vector<ObservedChannel> channels;  ///< temperatures in the machine's order, then displacements
 
+  /// How many batches there are.
   std::size_t batches() const { return names.size(); }
 };
 

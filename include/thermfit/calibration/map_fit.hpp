@@ -17,7 +17,7 @@ namespace thermfit {
 
 /// How map_fit() searches.
 struct MapFitOptions {
-  int most_iterations = 30;
+  int most_iterations = 30;          ///< of Levenberg-Marquardt
   double tolerance = 0.3;            ///< nats of log posterior an iteration must gain to go on
   std::vector<ResidualNoise> noise;  ///< to start from; empty: from the residual at the start
   Vector start;                      ///< working coordinates; empty: the prior's means

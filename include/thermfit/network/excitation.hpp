@@ -15,7 +15,7 @@ namespace thermfit {
 
 /// What drives one batch, as the simulator needs it: a clock, held inputs, the ambient temperature and where it starts.
 struct Excitation {
-  std::string batch;
+  std::string batch;                     ///< name of the batch
   Vector time_s;                         ///< since the first sample; strictly increasing
   std::vector<std::string> input_names;  ///< columns of `inputs`
   Matrix inputs;                         ///< samples x inputs, held until the next sample
@@ -28,8 +28,10 @@ struct Excitation {
   /// default is exact to about 1e-5 K.
   double state_step = 0.03;
 
+  /// How many there are.
   Index samples() const { return time_s.size(); }
 
+  /// Column of `inputs` of this name, or -1. Does not allocate.
   Index find_input(const std::string& name) const {
     for (std::size_t i = 0; i < input_names.size(); ++i)
       if (input_names[i] == name) return static_cast<Index>(i);

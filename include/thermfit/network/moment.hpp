@@ -11,11 +11,11 @@ namespace thermfit {
 /// Points into the simulation and is valid only during the call of the law. `temperature_degC` is null for laws that
 /// are held over a step (heat and conductance driven by inputs), which must not depend on the state.
 struct Moment {
-  double time_s = 0;                 ///< since the first sample of the batch
-  double ambient_degC = 0;           ///< what the network takes as ambient now, effects on it included
-  double first_ambient_degC = 0;     ///< the same at the first sample
-  double measured_ambient_degC = 0;  ///< the reading of the ambient sensor, where the batch has one
-  double first_measured_ambient_degC = 0;
+  double time_s = 0;                              ///< since the first sample of the batch
+  double ambient_degC = 0;                        ///< what the network takes as ambient now, effects on it included
+  double first_ambient_degC = 0;                  ///< the same at the first sample
+  double measured_ambient_degC = 0;               ///< the reading of the ambient sensor, where the batch has one
+  double first_measured_ambient_degC = 0;         ///< at the first sample
   const RoomHistory* ambient = nullptr;           ///< the course of ambient_degC over the batch
   const RoomHistory* measured_ambient = nullptr;  ///< and of measured_ambient_degC
   const double* first_reading_degC =

@@ -18,6 +18,7 @@ namespace thermfit {
 /// Its working coordinate t is 0 at the prior's mean and counts prior standard deviations:
 /// value = mean exp(sd t) where `logarithmic`, else mean + sd t. So the prior of every t is N(0, 1).
 struct Parameter {
+  /// Which number of the network it is.
   enum class Kind {
     capacity,
     ambient,
@@ -30,21 +31,24 @@ struct Parameter {
     start,
     effect
   };
-  Kind kind = Kind::capacity;
-  std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, sensor, sensor, –, effect
+  Kind kind = Kind::capacity;  ///< which number it is
+  std::size_t item = 0;        ///< node, node, link, source, displacement, sensor, sensor, sensor, –, effect
   std::size_t part =
       0;             ///< entry of the displacement's um_per_K or of the sensor's placement, or parameter of the effect
   std::string name;  ///< "capacity of head_front"
-  std::string unit;
-  bool logarithmic = false;
-  double mean = 0, sd = 1;
+  std::string unit;  ///< of the value; empty for a pure number
+  bool logarithmic = false;  ///< positive, moved by its logarithm
+  double mean = 0;           ///< of the prior
+  double sd = 1;             ///< of the prior: of the value, or of its logarithm where `logarithmic`
   double lower = -std::numeric_limits<double>::infinity();  ///< of the value
-  double upper = std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();   ///< of the value
 
   /// A number of the machine's own physics, as its document states it; not how it is read, nor what was added.
   bool of_machine() const { return kind <= Kind::expansion; }
 
+  /// The value at a working coordinate.
   double value(double t) const { return logarithmic ? mean * std::exp(sd * t) : mean + sd * t; }
+  /// The working coordinate of a value.
   double coordinate(double value) const { return logarithmic ? std::log(value / mean) / sd : (value - mean) / sd; }
   /// dvalue/dt at t.
   double slope(double t) const { return logarithmic ? sd * value(t) : sd; }

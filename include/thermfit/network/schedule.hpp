@@ -7,6 +7,7 @@
 
 namespace thermfit {
 
+/// What is done.
 enum class ScheduleKind {
   speed_stair,        ///< the main input in steps up to its largest value, then off
   single_high_speed,  ///< the main input at its largest value, from cold
@@ -26,15 +27,16 @@ enum class SchedulePurpose {
   pins        ///< a parameter that calibration moved
 };
 
+/// One piece of machine time.
 struct PlannedBlock {
-  ScheduleKind kind = ScheduleKind::cool_down;
-  SchedulePurpose purpose = SchedulePurpose::shows;
-  std::string subject;  ///< the input that moves, or the thermometer that is exchanged
-  std::string beside;   ///< the input that is held, or the thermometer it changes places with
-  std::string batch;    ///< that is repeated
-  double level = 0;     ///< largest value of the input that moves (of the one that is held, in a toggle)
-  int times = 1;
-  double machine_hours = 0;
+  ScheduleKind kind = ScheduleKind::cool_down;       ///< what is done
+  SchedulePurpose purpose = SchedulePurpose::shows;  ///< what for
+  std::string subject;                               ///< the input that moves, or the thermometer that is exchanged
+  std::string beside;        ///< the input that is held, or the thermometer it changes places with
+  std::string batch;         ///< that is repeated
+  double level = 0;          ///< largest value of the input that moves (of the one that is held, in a toggle)
+  int times = 1;             ///< how often
+  double machine_hours = 0;  ///< all times together
 };
 
 /// A block that shows an effect by itself.

@@ -15,30 +15,36 @@ namespace thermfit {
 ///
 /// Parts refer to nodes by index. network_check.hpp tells what a network must hold to be simulated.
 struct ThermalNetwork {
+  /// A part of uniform temperature.
   struct Node {
-    std::string name;
-    double capacity_J_per_K = 0;
-    double ambient_W_per_K = 0;
+    std::string name;             ///< unique
+    double capacity_J_per_K = 0;  ///< C, above 0
+    double ambient_W_per_K = 0;   ///< H, at least 0
   };
+  /// Conduction between two nodes.
   struct Link {
-    Index a = 0, b = 0;
-    double conductance_W_per_K = 0;
+    Index a = 0;                     ///< one node
+    Index b = 0;                     ///< the other
+    double conductance_W_per_K = 0;  ///< G, at least 0
   };
+  /// Heat P (u/scale)^exponent.
   struct HeatSource {
-    std::string name;
-    std::string input;  ///< a batch column, or "constant" for (u/scale) = 1
-    double scale = 1;
-    double exponent = 1;
-    double power_W = 0;
+    std::string name;                            ///< unique
+    std::string input;                           ///< a batch column, or "constant" for (u/scale) = 1
+    double scale = 1;                            ///< in the unit of the input, above 0
+    double exponent = 1;                         ///< m, above 0
+    double power_W = 0;                          ///< P: at u = scale
     std::vector<std::pair<Index, double>> into;  ///< node, share; the shares add to 1
   };
+  /// What a displacement probe shows.
   struct Displacement {
-    std::string output;  ///< the batch column it is compared with
-    bool zero_at_first_sample = true;
+    std::string output;                              ///< the batch column it is compared with
+    bool zero_at_first_sample = true;                ///< measured from its first sample
     std::vector<std::pair<Index, double>> um_per_K;  ///< node, expansion
   };
+  /// A thermometer.
   struct Sensor {
-    std::string column;
+    std::string column;   ///< the batch column it is compared with
     Index node = 0;       ///< ambient_node for a sensor in the air
     double offset_K = 0;  ///< reading = temperature of the node + offset
     /// A sensor sits somewhere in the part that its node stands for: the reading gains share (theta_j - theta_node) for
@@ -48,43 +54,51 @@ struct ThermalNetwork {
     /// response_s dtheta/dt. For a thermometer that is slow itself there is the effect sensor-lag.
     double response_s = 0;
   };
+  /// Where the temperature of the room comes from.
   struct Ambient {
+    /// How it is found in a batch.
     enum class Rule {
       column,          ///< measured: linear between the samples of `column`
       constant,        ///< `value_degC`
       initial,         ///< the first reading of the sensor mapped to ambient_node, held
       first_sample_of  ///< the first reading of `column`, held
     };
-    Rule rule = Rule::initial;
-    std::string column;
-    double value_degC = 0;
+    Rule rule = Rule::initial;  ///< how it is found
+    std::string column;         ///< for the rules that name one
+    double value_degC = 0;      ///< under Rule::constant
   };
+  /// Where a batch begins.
   struct Initial {
+    /// How the nodes start.
     enum class Rule {
       ambient,   ///< every node starts at the first ambient temperature
       measured,  ///< nodes with a sensor start at its first reading minus offset, others at ambient
       given      ///< nodes listed in `degC` start there, others at ambient
     };
-    Rule rule = Rule::ambient;
-    std::vector<std::pair<Index, double>> degC;
+    Rule rule = Rule::ambient;                   ///< how the nodes start
+    std::vector<std::pair<Index, double>> degC;  ///< node, temperature, under Rule::given
     /// Under Rule::ambient: nodes with sensors start off it by this share of what these read above it first. 1 is
     /// Rule::measured where sensors have no offset.
     double share = 0;
   };
   /// Prior standard deviations of the calibration: relative, except for the sensor offset.
   struct Uncertainty {
-    double capacity = 0.3, ambient = 0.3, conductance = 0.3, power = 0.3, um_per_K = 0.3;
-    double sensor_offset_K = 0.5;
+    double capacity = 0.3;           ///< of each capacity
+    double ambient = 0.3;            ///< of each conductance to ambient
+    double conductance = 0.3;        ///< of each link
+    double power = 0.3;              ///< of each heat source
+    double um_per_K = 0.3;           ///< of each expansion
+    double sensor_offset_K = 0.5;    ///< of each offset, K
     double sensor_placement = 0.25;  ///< of each share
     double sensor_response = 0.05;   ///< of the time constant of the sensor's node
     double start_share = 0;          ///< of Initial::share; 0: not moved
   };
   /// An effect of the catalogue that was added: its law is looked up by name, see network/effect.hpp.
   struct AddedEffect {
-    std::string effect;
-    std::string location;
-    std::string driver;  ///< empty where the law has none
-    std::vector<std::pair<std::string, double>> parameters;
+    std::string effect;                                      ///< name in the library
+    std::string location;                                    ///< where it acts
+    std::string driver;                                      ///< empty where the law has none
+    std::vector<std::pair<std::string, double>> parameters;  ///< name, value
 
     /// Value of a parameter by name; `fallback` where it is absent.
     double value(const std::string& parameter, double fallback = 0) const {
@@ -94,20 +108,21 @@ struct ThermalNetwork {
     }
   };
 
-  static constexpr Index ambient_node = -1;
+  static constexpr Index ambient_node = -1;  ///< stands for the air as the node of a sensor
 
-  std::string name;
-  double reference_degC = 20;
-  Ambient ambient;
-  std::vector<Node> nodes;
-  std::vector<Link> links;
-  std::vector<HeatSource> heat_sources;
-  std::vector<Displacement> displacements;
-  std::vector<Sensor> sensors;
-  Initial initial;
-  Uncertainty uncertainty;
-  std::vector<AddedEffect> effects;
+  std::string name;                         ///< of the machine
+  double reference_degC = 20;               ///< at which nothing has expanded
+  Ambient ambient;                          ///< the room
+  std::vector<Node> nodes;                  ///< the parts
+  std::vector<Link> links;                  ///< at most one between two nodes
+  std::vector<HeatSource> heat_sources;     ///< what warms it
+  std::vector<Displacement> displacements;  ///< what is compared with the thermal errors
+  std::vector<Sensor> sensors;              ///< what is compared with the temperatures
+  Initial initial;                          ///< where a batch begins
+  Uncertainty uncertainty;                  ///< what is known of its numbers
+  std::vector<AddedEffect> effects;         ///< in the order in which they act
 
+  /// How many nodes there are.
   Index node_count() const { return static_cast<Index>(nodes.size()); }
 
   /// Index of the node of this name, or -1. Does not allocate.

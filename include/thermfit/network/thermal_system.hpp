@@ -24,72 +24,84 @@ class ThermalSystem {
   using SeriesLaw =
       std::function<void(Eigen::Ref<Vector> series, Matrix& tangents, const double* parameters, const Column* columns)>;
 
-  static constexpr Index ambient = ThermalNetwork::ambient_node;
+  static constexpr Index ambient = ThermalNetwork::ambient_node;  ///< the room, as the far side of a conductance
   static constexpr Index ground = -2;  ///< a fixed 0 degC, for conductances whose far side is a heat of its own
 
+  /// Heat flows through it in proportion to a temperature difference.
   struct Conductance {
-    Index a = 0, b = ambient;
+    Index a = 0;                  ///< a node
+    Index b = ambient;            ///< a node, `ambient` or `ground`
     double W_per_K = 0;           ///< base value; 0 for elements that are all law
     Column column = -1;           ///< of the base value
     std::vector<BoundLaw> scale;  ///< value = base (1 + sum scale) + sum added
-    std::vector<BoundLaw> added;
+    std::vector<BoundLaw> added;  ///< W/K, of held inputs
+    /// Whether it changes with held inputs.
     bool held() const { return !scale.empty() || !added.empty(); }
   };
+  /// A ThermalNetwork::HeatSource.
   struct Source {
-    Shares into;
-    double power_W = 0, scale = 1, exponent = 1;
-    Index input = -1;  ///< -1: constant
-    Column column = -1;
+    Shares into;          ///< nodes it warms
+    double power_W = 0;   ///< at an input of `scale`
+    double scale = 1;     ///< in the unit of the input
+    double exponent = 1;  ///< of input / scale
+    Index input = -1;     ///< -1: constant
+    Column column = -1;   ///< of the power
   };
+  /// Heat of held inputs.
   struct HeldHeat {
-    Shares into;
-    BoundLaw law;
+    Shares into;   ///< nodes it warms
+    BoundLaw law;  ///< W
   };
   /// Heat that depends on temperatures: W into the shares. With `element` >= 0 the law is a temperature difference in K
   /// that drives heat through that conductance's base value.
   struct StateFlow {
-    Shares into;
-    std::vector<Index> depends_on;
-    BoundLaw law;
-    Index element = -1;
+    Shares into;                    ///< nodes it warms
+    std::vector<Index> depends_on;  ///< nodes whose temperatures the law looks at
+    BoundLaw law;                   ///< W, or K where `element` >= 0
+    Index element = -1;             ///< a conductance, or -1
   };
+  /// What a node stores.
   struct Capacity {
-    double J_per_K = 0;
-    Column column = -1;
-    BoundLaw law;  ///< for hidden nodes
-    bool from_law = false;
-    Index starts_like = -1;
+    double J_per_K = 0;      ///< of a node of the network
+    Column column = -1;      ///< of J_per_K
+    BoundLaw law;            ///< J/K, for hidden nodes
+    bool from_law = false;   ///< whether it is a hidden node
+    Index starts_like = -1;  ///< the node whose start a hidden node has
   };
+  /// A ThermalNetwork::Sensor.
   struct Sensor {
-    Index node = 0;
-    double offset_K = 0;
-    Column column = -1;
+    Index node = 0;                                   ///< or ambient
+    double offset_K = 0;                              ///< added to what it shows
+    Column column = -1;                               ///< of the offset
     std::vector<std::pair<Index, double>> placement;  ///< neighbour and share
-    std::vector<Column> placement_columns;
-    double response_s = 0;
-    Column response_column = -1;
-    std::vector<BoundLaw> laws;
+    std::vector<Column> placement_columns;            ///< of the shares
+    double response_s = 0;                            ///< how late it shows its place
+    Column response_column = -1;                      ///< of response_s
+    std::vector<BoundLaw> laws;                       ///< degC, of its reading, one after the other
   };
   /// See ThermalNetwork::Initial::share.
   struct Start {
-    double share = 0;
-    Column column = -1;
+    double share = 0;                   ///< of the first readings
+    Column column = -1;                 ///< of the share
     std::vector<Index> node_of_sensor;  ///< whatever an effect makes the sensor show later
   };
+  /// A ThermalNetwork::Displacement.
   struct Displacement {
-    bool zero_at_first_sample = true;
-    std::vector<std::pair<Index, double>> um_per_K;
-    std::vector<Column> columns;
+    bool zero_at_first_sample = true;                ///< measured from its first sample
+    std::vector<std::pair<Index, double>> um_per_K;  ///< node, expansion
+    std::vector<Column> columns;                     ///< of the expansions
+    /// What an effect adds at each sample.
     struct Term {
-      std::vector<Index> depends_on;
-      BoundLaw law;
+      std::vector<Index> depends_on;  ///< nodes whose temperatures the law looks at
+      BoundLaw law;                   ///< um
     };
+    /// What an effect makes of the whole series.
     struct Operator {
-      SeriesLaw law;
-      std::size_t owner;
+      SeriesLaw law;      ///< of the series
+      std::size_t owner;  ///< place in `owners`
     };
-    std::vector<Term> terms;
-    std::vector<Operator> operators;
+    std::vector<Term> terms;          ///< added, all of them
+    std::vector<Operator> operators;  ///< applied in this order
   };
 
   // --- what effects call -----------------------------------------------------------------------------------------
@@ -110,8 +122,9 @@ class ThermalSystem {
     state_flows.push_back({std::move(into), std::move(depends_on), bind(std::move(law_W)), -1});
   }
 
-  /// The conductance element of a node to ambient, and of a link.
+  /// The conductance element of a node to ambient.
   Index ambient_element(Index node) const { return node; }
+  /// The conductance element of a link.
   Index link_element(Index link) const { return own_nodes + link; }
 
   /// G becomes G (1 + law), law of held inputs.
@@ -179,6 +192,7 @@ class ThermalSystem {
   void displacement(Index output, std::vector<Index> depends_on, Law law_um) {
     at(displacements, output).terms.push_back({std::move(depends_on), bind(std::move(law_um))});
   }
+  /// A displacement output becomes the law of its whole series.
   void displacement_series(Index output, SeriesLaw law) {
     at(displacements, output).operators.push_back({std::move(law), current_owner()});
   }
@@ -188,24 +202,25 @@ class ThermalSystem {
 
   // --- contents ---------------------------------------------------------------------------------------------------
 
-  Index own_nodes = 0;  ///< nodes of the network itself; hidden nodes follow
-  double reference_degC = 20;
-  std::vector<std::string> inputs;
-  std::vector<Capacity> capacities;
-  std::vector<Conductance> conductances;
-  std::vector<Source> sources;
-  std::vector<HeldHeat> held_heat;
-  std::vector<StateFlow> state_flows;
-  std::vector<std::pair<Index, BoundLaw>> starts;
-  std::vector<BoundLaw> ambient_laws;
-  std::vector<BoundLaw> delays;
-  std::vector<Sensor> sensors;
-  Start start_by_readings;
-  std::vector<Displacement> displacements;
-  std::vector<BoundLaw::Owner> owners;  ///< one for each effect
-  Index columns = 0;                    ///< parameters whose sensitivities are wanted
-  std::vector<Column> state_columns;    ///< those of them that can move a temperature
+  Index own_nodes = 0;                             ///< nodes of the network itself; hidden nodes follow
+  double reference_degC = 20;                      ///< at which nothing has expanded
+  std::vector<std::string> inputs;                 ///< names of Moment::inputs
+  std::vector<Capacity> capacities;                ///< by node
+  std::vector<Conductance> conductances;           ///< of nodes to ambient, of links, then of effects
+  std::vector<Source> sources;                     ///< the network's own
+  std::vector<HeldHeat> held_heat;                 ///< from effects
+  std::vector<StateFlow> state_flows;              ///< from effects
+  std::vector<std::pair<Index, BoundLaw>> starts;  ///< node, K above its start
+  std::vector<BoundLaw> ambient_laws;              ///< degC, one after the other
+  std::vector<BoundLaw> delays;                    ///< s, added up
+  std::vector<Sensor> sensors;                     ///< in the network's order
+  Start start_by_readings;                         ///< of nodes with sensors
+  std::vector<Displacement> displacements;         ///< in the network's order
+  std::vector<BoundLaw::Owner> owners;             ///< one for each effect
+  Index columns = 0;                               ///< parameters whose sensitivities are wanted
+  std::vector<Column> state_columns;               ///< those of them that can move a temperature
 
+  /// The law at a moment, with the values of its effect. Does not allocate.
   double value(const BoundLaw& bound, const Moment& now) const {
     return bound.law(now, owners[bound.owner].values.data());
   }

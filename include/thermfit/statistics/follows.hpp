@@ -15,10 +15,11 @@ namespace thermfit {
 
 /// A recorded course, one evenly spaced series per batch.
 struct Course {
-  std::string name;
-  std::vector<Vector> series;
+  std::string name;            ///< of the column
+  std::vector<Vector> series;  ///< by batch, all of equal length
 };
 
+/// What a residual follows.
 struct Follows {
   std::string course;      ///< empty: none beats chance
   double correlation = 0;  ///< signed, pooled over batches, each batch's mean removed

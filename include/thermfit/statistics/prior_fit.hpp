@@ -27,8 +27,8 @@ THERMFIT_COMPILED_TEMPLATE(Matrix cross_products<double>(const Matrix&, const Ve
 
 /// The b that minimises sum (y - X b)^2 / noise^2 + sum (b / sd)^2.
 struct PriorFit {
-  Vector coefficients;
-  Matrix covariance;  ///< of the coefficients, for residuals of standard deviation `noise`; empty unless asked for
+  Vector coefficients;  ///< b, by regressor
+  Matrix covariance;    ///< of the coefficients, for residuals of standard deviation `noise`; empty unless asked for
 };
 
 /// Solves (X'X + noise^2 diag(sd)^-2) b = X'y from cross_products() of X and y. `prior_sd` (> 0) by regressor, `noise`

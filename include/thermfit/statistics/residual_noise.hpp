@@ -17,10 +17,11 @@ namespace thermfit {
 /// cov(r_i, r_j) = white^2 [i = j] + slow^2 exp(-|t_i - t_j| / memory_s). Correlated samples thereby count as the few
 /// that they are (Kristensen, Madsen and Joergensen 2004 use the same form for the terms a model lacks).
 struct ResidualNoise {
-  double white = 1;
-  double slow = 0;
-  double memory_s = 1;
+  double white = 1;     ///< standard deviation of the white part, in the unit of the channel
+  double slow = 0;      ///< of the slow part
+  double memory_s = 1;  ///< time after which the slow part has forgotten all but 1/e
 
+  /// Standard deviation of both together.
   double sd() const { return std::hypot(white, slow); }
 };
 
@@ -57,6 +58,7 @@ class Whitener {
     if (forget_.size() > 0) forget_(forget_.size() - 1) = 0;
   }
 
+  /// Of the covariance of the samples that count.
   double log_determinant() const { return log_determinant_; }
   Index count() const { return count_; }  ///< samples that count
 
@@ -121,7 +123,8 @@ THERMFIT_COMPILED_TEMPLATE(double log_likelihood<double>(const ResidualNoise&, c
 struct NoiseBounds {
   double least_white = 0;  ///< resolution and high-frequency noise of the readings
   double least_slow = 0;   ///< what a lumped machine cannot represent
-  double shortest_s = 1, longest_s = 1;
+  double shortest_s = 1;   ///< least memory_s
+  double longest_s = 1;    ///< most memory_s
 };
 
 /// Maximum-likelihood noise of a residual within bounds, by a compass search in the logarithms of the three numbers.

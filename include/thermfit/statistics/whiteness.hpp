@@ -13,6 +13,7 @@
 
 namespace thermfit {
 
+/// Outcome of the test.
 struct Whiteness {
   bool white = true;    ///< the cumulated periodogram stays inside its 5 % band
   double excess = 0;    ///< largest distance of the cumulated periodogram from the straight line
