@@ -1,5 +1,10 @@
-// The instances of include/thermfit/network/ that thermfit::compiled holds: see thermfit/compiled.hpp.
-#include "thermfit/compiled.hpp"
+// The instances of network/ that thermfit::compiled holds; what lies below is compiled elsewhere.
+#include "thermfit/statistics/follows.hpp"
+#include "thermfit/statistics/prior_fit.hpp"
+#include "thermfit/statistics/residual_noise.hpp"
+#include "thermfit/statistics/whiteness.hpp"
+
 #undef THERMFIT_COMPILED_ELSEWHERE
 #define THERMFIT_COMPILED_ELSEWHERE
+
 #include "thermfit/network/simulate.hpp"

@@ -176,6 +176,8 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
     return OrderedJson{{"place", place_of(one)}, {"what", what_of(one)}};
   });
   document["weaker_claims"] = array_of(diagnosis.weaker_claims, claim_of);
+  OrderedJson& judged_by = document["judged_by"] = OrderedJson::object();
+  for (const auto& [name, value] : diagnosis.judged_by) judged_by[name] = figure(value);
   return document;
 }
 

@@ -218,6 +218,8 @@ Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& real, const Ef
   diagnosis.ruled_out = detail::ruled_out<Scalar>(found, judgement);
   diagnosis.data_problems = data_problems(machine, real);
   diagnosis.weaker_claims = detail::claims_of<Scalar>(found, machine, setting);
+  diagnosis.judged_by = named_numbers(options.thresholds);
+  diagnosis.judged_by.emplace_back("evidence_power", evidence_power);
   diagnosis.with_effects = found.at(judgement.best).fit.network();
   diagnosis.next_experiment = detail::experiment_after<Scalar>(found, judgement, diagnosis, library);
   return diagnosis;

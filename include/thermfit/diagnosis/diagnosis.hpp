@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thermfit/network/schedule.hpp"
@@ -268,6 +269,7 @@ struct Diagnosis {
   std::vector<CalibrationMove> calibration;  ///< largest move first
   std::vector<DataProblem> data_problems;
   std::vector<WeakerClaim> weaker_claims;
+  std::vector<std::pair<std::string, double>> judged_by;  ///< the numbers that decided, by name
   /// The machine calibrated, with the effects found; without nodes where the simulator was not a network.
   ThermalNetwork with_effects;
 };

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "thermfit/calibration/machine_record.hpp"
 
@@ -26,6 +30,27 @@ struct Thresholds {
   double harm = 0.01;              ///< sum of log ratios by which displacements may be further off with the effect
   std::size_t proving_folds = 3;   ///< with fewer, what fits best is a suspicion
 };
+
+/// Numbers that decide, by the name of their field: what a diagnosis says that it was judged by.
+using NamedNumbers = std::vector<std::pair<std::string, double>>;
+
+inline NamedNumbers named_numbers(const Thresholds& of) {
+  return {{"real_from_temperature", of.real_from_temperature},
+          {"real_from_displacement", of.real_from_displacement},
+          {"least_excess", of.least_excess},
+          {"calibration_helps", of.calibration_helps},
+          {"known_by_share", of.known_by_share},
+          {"known_by_left", of.known_by_left},
+          {"least_known", of.least_known},
+          {"least_second", of.least_second},
+          {"beyond_doubt", of.beyond_doubt},
+          {"law_tolerance", of.law_tolerance},
+          {"listed", of.listed},
+          {"surely_shrinks", of.surely_shrinks},
+          {"may_shrink", of.may_shrink},
+          {"harm", of.harm},
+          {"proving_folds", static_cast<double>(of.proving_folds)}};
+}
 
 inline double logistic(double odds) { return 1 / (1 + std::exp(-odds)); }
 

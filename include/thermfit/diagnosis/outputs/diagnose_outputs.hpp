@@ -377,6 +377,9 @@ class OutputsDiagnosis {
 
   void tell(const std::vector<std::string>& beside) {
     result_.simulator = SimulatorKind::outputs;
+    result_.judged_by = named_numbers(limits_);
+    result_.judged_by.emplace_back("listed", options_.shared.listed);
+    result_.judged_by.emplace_back("proving_folds", static_cast<double>(options_.shared.proving_folds));
     double hours = 0;
     for (const PairedBatch& batch : campaign_.batches) {
       result_.batches.push_back(batch.name);

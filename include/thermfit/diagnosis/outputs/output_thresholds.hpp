@@ -1,5 +1,7 @@
 #pragma once
 
+#include "thermfit/diagnosis/judgement/thresholds.hpp"
+
 namespace thermfit {
 
 /// The numbers between the outputs of a simulator and a verdict on them. Set on the withheld cases and generated
@@ -24,5 +26,26 @@ struct OutputThresholds {
   double placement_tolerance_K = .5;     ///< what a thermometer may be off because of where it sits
   double loosest = .5;                   ///< calibration is as loose as the median channel needs, but no looser
 };
+
+inline NamedNumbers named_numbers(const OutputThresholds& of) {
+  return {{"decisive_nats", of.decisive_nats},
+          {"further", of.further},
+          {"most_effects", static_cast<double>(of.most_effects)},
+          {"least_softness_nats", of.least_softness_nats},
+          {"softness_share", of.softness_share},
+          {"most_certain", of.most_certain},
+          {"none_below_noises", of.none_below_noises},
+          {"closed_below_noises", of.closed_below_noises},
+          {"nearly_closed_noises", of.nearly_closed_noises},
+          {"calibration_left", of.calibration_left},
+          {"least_contribution_noises", of.least_contribution_noises},
+          {"left_per_channel", of.left_per_channel},
+          {"left_share", of.left_share},
+          {"helps_displacement", of.helps_displacement},
+          {"helps_thermometer", of.helps_thermometer},
+          {"fault_leaves", of.fault_leaves},
+          {"placement_tolerance_K", of.placement_tolerance_K},
+          {"loosest", of.loosest}};
+}
 
 }  // namespace thermfit

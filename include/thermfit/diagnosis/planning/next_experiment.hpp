@@ -131,8 +131,7 @@ inline NextExperiment experiment_by_kind(const FoundEffect& found, const EffectL
     PlannedBlock block = library.at(one.effect).shown_by({one.effect, one.location, one.driver, {}}, batch_hours);
     const bool new_kind = result.plan.empty() || result.plan[0].kind != block.kind ||
                           (block.kind == ScheduleKind::toggle && result.plan[0].subject != block.subject);
-    if (new_kind)
-      result.plan.push_back(std::move(block));
+    if (new_kind) result.plan.push_back(std::move(block));
   }
   result.remark = NextExperiment::Remark::not_foreseeable;
   return result;

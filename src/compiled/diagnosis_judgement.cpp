@@ -1,0 +1,14 @@
+// The instances of diagnosis/judgement/ that thermfit::compiled holds; what lies below is compiled elsewhere.
+#include "thermfit/diagnosis/search/search.hpp"
+#include "thermfit/findings/findings.hpp"
+#include "thermfit/simulation.hpp"
+#include "thermfit/statistics/follows.hpp"
+#include "thermfit/statistics/prior_fit.hpp"
+#include "thermfit/statistics/residual_noise.hpp"
+#include "thermfit/statistics/whiteness.hpp"
+#include "thermfit/study.hpp"
+
+#undef THERMFIT_COMPILED_ELSEWHERE
+#define THERMFIT_COMPILED_ELSEWHERE
+
+#include "thermfit/diagnosis/judgement/judge.hpp"
