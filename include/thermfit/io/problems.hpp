@@ -1,12 +1,30 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "thermfit/error.hpp"
 
 namespace thermfit {
+namespace detail {
+
+using Parts = std::initializer_list<std::string_view>;
+
+inline std::string joined(Parts parts) {
+  std::string text;
+  for (const std::string_view part : parts) text += part;
+  return text;
+}
+
+/// An Error told in parts, which are joined here and not in each of the many places that complain.
+inline Error problem(const std::string& place, Parts found, Parts allowed = {}, Parts remedy = {}) {
+  return Error(place, joined(found), joined(allowed), joined(remedy));
+}
+
+}  // namespace detail
 
 /// Several problems of one input, told at once. `what()` has a line each; place() and the rest are the first's. What is
 /// wrong alike with several files as a whole, such as a column that none of them has, is one line.

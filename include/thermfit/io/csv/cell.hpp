@@ -18,7 +18,7 @@ inline Error bad_cell(const std::string& place, const std::string& column, std::
   const std::string found = column + " is " + shown(text);
   const std::string point = dialect.decimal_mark == ',' ? "a number such as 20,1" : "a number such as 20.1";
   const auto explain = [&](const std::string& what, const std::string& remedy) {
-    return Error(place, found + (what.empty() ? "" : ", " + what), point, remedy);
+    return problem(place, {found, (what.empty() ? "" : ", " + what)}, {point}, {remedy});
   };
   const std::string_view digits = "0123456789";
   std::string_view bare = text;

@@ -124,9 +124,9 @@ inline char detect_separator(const CsvEvidence& evidence, std::size_t names_give
   const std::string options = "CsvOptions::separator = comma, semicolon or tab";
   const std::size_t first_line = evidence.lines.empty() ? 1 : evidence.lines.front().number;
   const auto ambiguous = [&](const SeparatorEvidence& a, const SeparatorEvidence& b) {
-    return Error(place(name, first_line),
-                 "may be separated by " + separator_name(a.separator) + " or by " + separator_name(b.separator),
-                 options, "say which");
+    return problem(place(name, first_line),
+                   {"may be separated by ", separator_name(a.separator), " or by ", separator_name(b.separator)},
+                   {options}, {"say which"});
   };
   if (tables.size() > 1) {
     const auto better = [](const SeparatorEvidence& a, const SeparatorEvidence& b) {
@@ -143,17 +143,17 @@ inline char detect_separator(const CsvEvidence& evidence, std::size_t names_give
     for (const SeparatorEvidence& one : likely)
       if (row.separator != one.separator && row.number_share() > one.number_share() &&
           row.consistent_lines > one.matching_lines / 2)
-        throw Error(place(name, first_line),
-                    "the first line is separated by " + separator_name(one.separator) + ", the rows by " +
-                        separator_name(row.separator),
-                    "one separator in the whole file", "mend the first line, or say " + options);
+        throw problem(place(name, first_line),
+                      {"the first line is separated by ", separator_name(one.separator), ", the rows by ",
+                       separator_name(row.separator)},
+                      {"one separator in the whole file"}, {"mend the first line, or say ", options});
   if (likely.size() > 1) throw ambiguous(likely[0], likely[1]);
   if (likely.size() == 1) return likely[0].separator;
   const bool has_fields =
       std::any_of(rows.begin(), rows.end(), [](const SeparatorEvidence& row) { return row.number_share() > 0.5; });
   if (has_fields && names_given != 1)
-    throw Error(place(name, first_line), "one name, but the rows have several fields", "a name for each column",
-                "mend the first line, or say " + options);
+    throw problem(place(name, first_line), {"one name, but the rows have several fields"}, {"a name for each column"},
+                  {"mend the first line, or say ", options});
   return ',';
 }
 
@@ -179,17 +179,18 @@ inline char detect_decimal_mark(const CsvEvidence& evidence, char separator, boo
   }
   if (commas.count == 0) return '.';
   if (points.count > 0)
-    throw Error(commas.place, commas.text + " has a comma, and " + points.text + " (" + points.place + ") has a point",
-                "one decimal mark in a file",
-                "say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point; write numbers without "
-                "thousands separators");
+    throw problem(commas.place, {commas.text, " has a comma, and ", points.text, " (", points.place, ") has a point"},
+                  {"one decimal mark in a file"},
+                  {"say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point; write numbers without "
+                   "thousands separators"});
   if (separator == ',')
-    throw Error(commas.place, commas.text + " in a comma-separated file may be a decimal number or grouped thousands",
-                "", "say CsvOptions::decimal_mark = comma if it is a decimal number");
+    throw problem(commas.place,
+                  {commas.text, " in a comma-separated file may be a decimal number or grouped thousands"}, {},
+                  {"say CsvOptions::decimal_mark = comma if it is a decimal number"});
   if (separator == '\t' && commas.grouped == commas.count)
-    throw Error(
-        commas.place, commas.text + " may be a decimal number or grouped thousands, as all its like here", "",
-        "say CsvOptions::decimal_mark = comma if it is a decimal number; else write thousands without separators");
+    throw problem(
+        commas.place, {commas.text, " may be a decimal number or grouped thousands, as all its like here"}, {},
+        {"say CsvOptions::decimal_mark = comma if it is a decimal number; else write thousands without separators"});
   return ',';
 }
 

@@ -85,11 +85,11 @@ inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::st
 inline std::vector<CsvColumn> columns_in(std::string_view line, std::size_t number, char separator,
                                          const std::string& name) {
   if (!is_utf8(line))
-    throw Error(place(name, number), "names that are not UTF-8", "text in UTF-8",
-                "convert: iconv -f WINDOWS-1252 -t UTF-8 FILE");
+    throw problem(place(name, number), {"names that are not UTF-8"}, {"text in UTF-8"},
+                  {"convert: iconv -f WINDOWS-1252 -t UTF-8 FILE"});
   std::vector<CsvField> fields;
   if (const auto broken = split_line(line, separator, fields))
-    throw Error(place(name, number, broken->column), broken->found, "", broken->remedy);
+    throw problem(place(name, number, broken->column), {broken->found}, {}, {broken->remedy});
   std::vector<CsvColumn> columns;
   for (const CsvField& field : fields) columns.push_back(column_of(field));
   return columns;
@@ -118,8 +118,8 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
         return is_missing(column.title) || parse_field(column.title, dialect.decimal_mark) ||
                parse_date_time(column.title);
       }))
-    throw Error(place(name, first.number), "numbers where the names of the columns should be", "a header line",
-                "add one, or name the columns: CsvOptions::columns = NAME,NAME,…");
+    throw problem(place(name, first.number), {"numbers where the names of the columns should be"}, {"a header line"},
+                  {"add one, or name the columns: CsvOptions::columns = NAME,NAME,…"});
   header.empty_last_column = header.columns.size() > 1 && header.columns.back().title.empty() &&
                              rows_end_in_separator(evidence, dialect.separator);
   if (header.empty_last_column) header.columns.pop_back();
@@ -133,8 +133,8 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
     for (std::size_t c = 0; c < header.columns.size(); ++c) {
       std::string& unit = header.columns[c].unit;
       if (!unit.empty() && !units[c].empty() && unit != units[c])
-        throw Error(place(name, evidence.lines[1].number, fields[c].column),
-                    "unit " + units[c] + " below a name that says " + unit, "one unit for a column");
+        throw problem(place(name, evidence.lines[1].number, fields[c].column),
+                      {"unit ", units[c], " below a name that says ", unit}, {"one unit for a column"});
       if (unit.empty()) unit = units[c];
     }
   }
@@ -145,25 +145,25 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
 inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, const CsvOptions& options,
                              const std::string& name) {
   if (evidence.lines.empty() && options.columns.empty())
-    throw Error(name, "has no line with content", "a header line and rows of numbers");
+    throw problem(name, {"has no line with content"}, {"a header line and rows of numbers"});
   CsvHeader header = options.columns.empty() ? names_read(evidence, dialect, name) : names_given(options);
   if (header.columns.size() > options.max_columns)
-    throw Error(place(name, header.line), std::to_string(header.columns.size()) + " columns",
-                "at most " + std::to_string(options.max_columns),
-                "is this the right file, and the right CsvOptions::separator?");
+    throw problem(place(name, header.line), {std::to_string(header.columns.size()), " columns"},
+                  {"at most ", std::to_string(options.max_columns)},
+                  {"is this the right file, and the right CsvOptions::separator?"});
   Problems problems(options.max_errors);
   std::map<std::string, std::size_t> first_of_name;
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const CsvColumn& column = header.columns[c];
     const std::string at = header.line == 0 ? "CsvOptions::columns" : place(name, header.line, column.position);
     if (column.name.empty())
-      problems.add(Error(at, "column " + std::to_string(c + 1) + " has no name", "a name for each column"));
+      problems.add(problem(at, {"column ", std::to_string(c + 1), " has no name"}, {"a name for each column"}));
     const auto [before, fresh] = first_of_name.emplace(column.name, c + 1);
     if (!fresh && !column.name.empty())
-      problems.add(Error(at,
-                         "column " + std::to_string(c + 1) + " is called " + shown(column.name) + " like column " +
-                             std::to_string(before->second),
-                         "names that differ", "rename one in the header line"));
+      problems.add(problem(at,
+                           {"column ", std::to_string(c + 1), " is called ", shown(column.name), " like column ",
+                            std::to_string(before->second)},
+                           {"names that differ"}, {"rename one in the header line"}));
   }
   problems.throw_if_any();
   return header;

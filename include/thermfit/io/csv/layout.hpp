@@ -126,7 +126,7 @@ class LayoutMaker {
 
   std::string take(std::size_t c, const std::string& as) {
     if (!taken_[c].empty() && taken_[c] != as)
-      throw Error(place_of(c), column(c).name + " is to be " + taken_[c] + " and " + as, "one role for a column");
+      throw problem(place_of(c), {column(c).name, " is to be ", taken_[c], " and ", as}, {"one role for a column"});
     taken_[c] = as;
     return column(c).name;
   }
@@ -140,8 +140,8 @@ class LayoutMaker {
   std::size_t find(const std::string& wanted, const std::string& option) const {
     for (std::size_t c = 0; c < header_.columns.size(); ++c)
       if (column(c).is_called(wanted)) return c;
-    throw Error(name_, "no column " + shown(wanted) + " (" + option + ")" + did_you_mean(wanted, names()),
-                name_list(names()));
+    throw problem(name_, {"no column ", shown(wanted), " (", option, ")", did_you_mean(wanted, names())},
+                  {name_list(names())});
   }
 
   /// Columns that the patterns of an option name, each once, in the order of the option.
@@ -167,7 +167,8 @@ class LayoutMaker {
         any = true;
       }
       if (!any)
-        throw Error(name_, "no column of numbers is like " + shown(pattern) + " (" + option + ")", name_list(names()));
+        throw problem(name_, {"no column of numbers is like ", shown(pattern), " (", option, ")"},
+                      {name_list(names())});
     }
     return chosen;
   }
@@ -228,8 +229,8 @@ class LayoutMaker {
     if (text.empty()) return;
     const auto unit = find_unit(text);
     if (!unit || unit->quantity != quantity)
-      throw Error(place_of(c), column(c).name + " is in " + shown(text) + (unit ? ", a unit of another quantity" : ""),
-                  std::string(unit_names(quantity)), "name the unit in brackets behind the name");
+      throw problem(place_of(c), {column(c).name, " is in ", shown(text), (unit ? ", a unit of another quantity" : "")},
+                    {std::string(unit_names(quantity))}, {"name the unit in brackets behind the name"});
     slot.unit = *unit;
     slot.convert = !unit->is_canonical();
     if (slot.convert && quantity != Quantity::time) layout_.roles.converted.push_back(column(c).name + " from " + text);
@@ -244,8 +245,8 @@ class LayoutMaker {
     for (std::size_t c = 0; c < header_.columns.size() && found.empty() && options_.time_column.empty(); ++c)
       if (taken_[c].empty() && contents_[c].date_time && !contents_[c].numbers) found.push_back(c);
     if (found.size() > 1)
-      throw Error(place_of(found[1]), column(found[1]).name + " may be the time, and so may " + column(found[0]).name,
-                  "one clock", "say CsvOptions::time_column = " + column(found[0]).name);
+      throw problem(place_of(found[1]), {column(found[1]).name, " may be the time, and so may ", column(found[0]).name},
+                    {"one clock"}, {"say CsvOptions::time_column = ", column(found[0]).name});
     if (found.empty()) return;
     const std::size_t c = found.front();
     layout_.roles.time = take(c, "the time");
@@ -256,8 +257,8 @@ class LayoutMaker {
     std::string unit = column(c).unit.empty() && by_name != "?" ? by_name : column(c).unit;
     if (!options_.time_unit.empty() && !unit.empty() && find_unit(unit) && find_unit(options_.time_unit) &&
         unit != options_.time_unit)
-      throw Error(place_of(c), column(c).title + " says " + unit + ", CsvOptions::time_unit says " + options_.time_unit,
-                  "one unit for a column");
+      throw problem(place_of(c), {column(c).title, " says ", unit, ", CsvOptions::time_unit says ", options_.time_unit},
+                    {"one unit for a column"});
     layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
     if (unit.empty()) unit = options_.time_unit.empty() ? "min" : options_.time_unit;
     set_unit(slot, c, Quantity::time, unit);

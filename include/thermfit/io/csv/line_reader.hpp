@@ -36,12 +36,13 @@ class CsvLineReader {
     std::optional<std::size_t> found;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       if (!columns_[c].is_called(wanted)) continue;
-      if (found) throw Error(detail::place(name_, line_number_), "column '" + wanted + "' twice");
+      if (found) throw detail::problem(detail::place(name_, line_number_), {"column '", wanted, "' twice"});
       found = c;
     }
     if (found && unit_of(columns_[*found], quantity).quantity != quantity)
-      throw Error(detail::place(name_, line_number_, columns_[*found].position),
-                  "unit '" + columns_[*found].unit + "' of '" + wanted + "'", std::string(unit_names(quantity)));
+      throw detail::problem(detail::place(name_, line_number_, columns_[*found].position),
+                            {"unit '", columns_[*found].unit, "' of '", wanted, "'"},
+                            {std::string(unit_names(quantity))});
     return found;
   }
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "thermfit/error.hpp"
 #include "thermfit/io/files/byte_source.hpp"
+#include "thermfit/io/problems.hpp"
 
 namespace thermfit::detail {
 
@@ -44,8 +44,8 @@ class CsvLines {
     const std::size_t feed = start.find('\n');
     crlf_ = feed != std::string_view::npos && feed > 0 && start[feed - 1] == '\r';
     if (feed == std::string_view::npos && start.find('\r') < start.size() - 1)
-      throw Error(place(name(), 1, start.find('\r') + 1), "lines that end in a lone carriage return",
-                  "line feed, or carriage return and line feed", "convert: tr '\\r' '\\n' <FILE");
+      throw problem(place(name(), 1, start.find('\r') + 1), {"lines that end in a lone carriage return"},
+                    {"line feed, or carriage return and line feed"}, {"convert: tr '\\r' '\\n' <FILE"});
   }
 
   const std::string& name() const { return source_.name(); }
@@ -92,8 +92,8 @@ class CsvLines {
 
   void refuse_long(std::size_t size) const {
     if (size > max_line_bytes_)
-      throw Error(place(name(), line_number_ + 1), "a line longer than " + std::to_string(max_line_bytes_) + " bytes",
-                  "lines of a table", "is this the right file?");
+      throw problem(place(name(), line_number_ + 1), {"a line longer than ", std::to_string(max_line_bytes_), " bytes"},
+                    {"lines of a table"}, {"is this the right file?"});
   }
 
   static std::size_t content_lines(std::string_view lines) {
@@ -123,8 +123,8 @@ class CsvLines {
       const std::string_view before(buffer_.data(), offset);
       const auto lines = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
       const std::size_t line_begin = lines == 0 ? 0 : before.rfind('\n') + 1;
-      throw Error(place(name(), line_number_ + lines + 1, offset - line_begin + 1), "a NUL byte", "text in UTF-8",
-                  "a logger that lost power may leave such bytes: cut them out; a binary file is not read");
+      throw problem(place(name(), line_number_ + lines + 1, offset - line_begin + 1), {"a NUL byte"}, {"text in UTF-8"},
+                    {"a logger that lost power may leave such bytes: cut them out; a binary file is not read"});
     }
     end_ += count;
     return count > 0;
@@ -132,11 +132,11 @@ class CsvLines {
 
   void refuse_foreign_content(std::string_view start) const {
     if (start.substr(0, 2) == "\xFF\xFE" || start.substr(0, 2) == "\xFE\xFF")
-      throw Error(name(), "is UTF-16", "text in UTF-8", "convert: iconv -f UTF-16 -t UTF-8 FILE");
+      throw problem(name(), {"is UTF-16"}, {"text in UTF-8"}, {"convert: iconv -f UTF-16 -t UTF-8 FILE"});
     if (start.substr(0, 4) == "PK\x03\x04")
-      throw Error(name(), "is an Excel workbook or a zip archive", "text in UTF-8", "save the sheet as CSV");
+      throw problem(name(), {"is an Excel workbook or a zip archive"}, {"text in UTF-8"}, {"save the sheet as CSV"});
     if (start.substr(0, 4) == "\xD0\xCF\x11\xE0")
-      throw Error(name(), "is an old Excel workbook", "text in UTF-8", "save the sheet as CSV");
+      throw problem(name(), {"is an old Excel workbook"}, {"text in UTF-8"}, {"save the sheet as CSV"});
   }
 
   ByteSource source_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -40,7 +39,7 @@ inline Channels channels(const std::vector<std::string>& names, const GrowingBat
 }
 
 inline std::string stem(const std::string& path) {
-  std::string name = std::filesystem::path(path).filename().string();
+  std::string name = path.substr(path.rfind('/') + 1);  // npos + 1 is 0
   for (const char* suffix : {".gz", ".csv", ".CSV", ".txt", ".tsv"})
     if (name.size() > std::string_view(suffix).size() &&
         name.compare(name.size() - std::string_view(suffix).size(), std::string::npos, suffix) == 0)
@@ -54,10 +53,10 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
   if (roles.temperatures.empty()) {
     std::vector<std::string> others = roles.inputs;
     others.insert(others.end(), roles.ignored.begin(), roles.ignored.end());
-    problems.add(
-        Error(reader.file().path, "no temperature point", "T1, T2, … or the names given by CsvOptions::temperatures",
-              others.size() == 1 ? "one column only: is the separator another? CsvOptions::separator says which"
-                                 : "columns there are: " + name_list(others)));
+    problems.add(problem(
+        reader.file().path, {"no temperature point"}, {"T1, T2, … or the names given by CsvOptions::temperatures"},
+        {others.size() == 1 ? "one column only: is the separator another? CsvOptions::separator says which"
+                            : "columns there are: " + name_list(others)}));
     return;
   }
   const std::size_t width = roles.temperatures.size() + roles.errors.size() + roles.inputs.size();
@@ -103,11 +102,12 @@ inline void agree(const Channels& wanted, Channels& channels, const Batch& batch
   for (const std::string& name : channels.names)
     if (wanted.find(name) < 0) surplus.push_back(name);
   if (!missing.empty() || !surplus.empty())
-    throw Error(batch.source,
-                (missing.empty() ? "has " + kind + " " + name_list(surplus) + " beyond those"
-                                 : "lacks " + kind + " " + name_list(missing)) +
-                    " of " + first.source,
-                "the same in every batch: " + name_list(wanted.names), "choose common ones with " + option);
+    throw problem(batch.source,
+                  {(missing.empty() ? "has " + kind + " " + name_list(surplus) + " beyond those"
+                                    : "lacks " + kind + " " + name_list(missing)) +
+                       " of ",
+                   first.source},
+                  {"the same in every batch: ", name_list(wanted.names)}, {"choose common ones with ", option});
   Channels ordered{wanted.names, Matrix(channels.values.rows(), channels.values.cols())};
   for (Index c = 0; c < wanted.count(); ++c)
     ordered.values.col(c) = channels.values.col(channels.find(wanted.names[static_cast<std::size_t>(c)]));
@@ -120,7 +120,7 @@ inline void make_names_differ(Campaign& batches) {
   for (const Batch& batch : batches) ++count[batch.name];
   for (Batch& batch : batches) {
     if (count[batch.name] < 2) continue;
-    const std::string path = (std::filesystem::path(batch.source).parent_path() / stem(batch.source)).string();
+    const std::string path = batch.source.substr(0, batch.source.rfind('/') + 1) + stem(batch.source);
     batch.name = stem(batch.source) == batch.name ? path : path + ':' + batch.name;
   }
 }
@@ -136,7 +136,7 @@ inline CsvReading read_campaign(const std::vector<std::string>& paths, const Csv
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
         paths.begin() + static_cast<std::ptrdiff_t>(i)) {
-      problems.add(Error(paths[i], "is given twice", "each file once"));
+      problems.add(detail::problem(paths[i], {"is given twice"}, {"each file once"}));
       continue;
     }
     try {

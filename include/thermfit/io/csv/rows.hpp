@@ -159,7 +159,7 @@ class CsvRowReader {
   bool parse_carefully(std::string_view line) {
     missing_.clear();
     if (const auto broken = detail::split_line(line, file_.dialect.separator, fields_)) {
-      problems_.add(Error(here(broken->column), broken->found, "", broken->remedy));
+      problems_.add(detail::problem(here(broken->column), {broken->found}, {}, {broken->remedy}));
       return false;
     }
     if (fields_.size() != layout_.slots.size()) {
@@ -181,14 +181,15 @@ class CsvRowReader {
           break;
         case Role::empty:
           if (field.text.empty()) break;
-          problems_.add(Error(here(field.column), detail::shown(field.text) + " in a column without a name", "",
-                              "give the last column a name"));
+          problems_.add(detail::problem(here(field.column), {detail::shown(field.text), " in a column without a name"},
+                                        {}, {"give the last column a name"}));
           good = false;
           break;
         case Role::date_time:
           if (take_date_time(field.text, f, field.column)) break;
-          problems_.add(Error(here(field.column), name_of(f) + " is " + detail::shown(field.text),
-                              "an ISO 8601 date-time such as 2024-05-31T08:00:00, with a zone in all rows or in none"));
+          problems_.add(detail::problem(
+              here(field.column), {name_of(f), " is ", detail::shown(field.text)},
+              {"an ISO 8601 date-time such as 2024-05-31T08:00:00, with a zone in all rows or in none"}));
           good = false;
           break;
         case Role::time:
@@ -211,19 +212,22 @@ class CsvRowReader {
                               (found == 1 ? " field" : " fields") + " under " + std::to_string(wanted) +
                               (wanted == 1 ? " name" : " names");
     if (found < wanted)
-      return Error(here(),
-                   count + ": " + (found < names ? name_of(found) : "the last, without name,") +
-                       (found + 1 < wanted ? " and what follows are" : " is") + " not there",
-                   "a field for each name", "complete the row, or delete it");
+      return detail::problem(here(),
+                             {count, ": ",
+                              (found < names ? name_of(found) : "the last, without name,") +
+                                  (found + 1 < wanted ? " and what follows are" : " is"),
+                              " not there"},
+                             {"a field for each name"}, {"complete the row, or delete it"});
     if (found == wanted + 1 && fields_.back().text.empty())
-      return Error(here(fields_.back().column), count + ": the row ends in a " + detail::separator_name(separator),
-                   "a field for each name",
-                   "end the first line in a " + detail::separator_name(separator) + " too, or no row");
-    return Error(here(fields_[wanted].column), count + ": " + detail::shown(fields_[wanted].text) + " is too many",
-                 "a field for each name",
-                 separator == ','
-                     ? "if the comma is the decimal mark too, save with semicolons; put text with commas in quotes"
-                     : "delete the surplus, or name the column");
+      return detail::problem(here(fields_.back().column),
+                             {count, ": the row ends in a ", detail::separator_name(separator)},
+                             {"a field for each name"},
+                             {"end the first line in a ", detail::separator_name(separator), " too, or no row"});
+    return detail::problem(
+        here(fields_[wanted].column), {count, ": ", detail::shown(fields_[wanted].text), " is too many"},
+        {"a field for each name"},
+        {separator == ',' ? "if the comma is the decimal mark too, save with semicolons; put text with commas in quotes"
+                          : "delete the surplus, or name the column"});
   }
 
   bool take_number(std::string_view text, std::size_t field, std::size_t column, double& value) {
@@ -258,7 +262,7 @@ class CsvRowReader {
   /// Finds the batch that the row belongs to. False when its name is missing.
   bool enter_state() {
     if (!layout_.roles.batch.empty() && batch_.empty()) {
-      problems_.add(Error(here(), layout_.roles.batch + " is empty", "the name of a batch in every row"));
+      problems_.add(detail::problem(here(), {layout_.roles.batch, " is empty"}, {"the name of a batch in every row"}));
       return false;
     }
     if (!state_ || batch_ != current_batch_) {
@@ -278,11 +282,11 @@ class CsvRowReader {
       for (const Missing& one : missing_) {
         const detail::CsvSlot& slot = layout_.slots[one.field];
         if (slot.role != Role::value || state_->held.empty()) {
-          problems_.add(
-              Error(here(one.column),
-                    name_of(one.field) + " is missing, and " +
-                        (slot.role == Role::value ? "there is no value before it to hold" : "time cannot be held"),
-                    "CsvOptions::missing = drop"));
+          problems_.add(detail::problem(
+              here(one.column),
+              {name_of(one.field), " is missing, and ",
+               (slot.role == Role::value ? "there is no value before it to hold" : "time cannot be held")},
+              {"CsvOptions::missing = drop"}));
           return false;
         }
         values_[slot.index] = state_->held[slot.index];
@@ -309,12 +313,12 @@ class CsvRowReader {
     const double before = state_->time_s;
     state_->time_s = time_s_;
     if (time_s_ > before || !options_.increasing_time) return remember();
-    problems_.add(Error(
+    problems_.add(detail::problem(
         here(),
-        layout_.roles.time + (time_s_ == before ? " stands still at " : " goes back to ") + exact_text(time_s_) + " s" +
-            (time_s_ == before ? "" : " from " + exact_text(before) + " s"),
-        "time that increases from row to row",
-        "split runs with CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"));
+        {layout_.roles.time, (time_s_ == before ? " stands still at " : " goes back to "), exact_text(time_s_),
+         " s" + (time_s_ == before ? "" : " from " + exact_text(before) + " s")},
+        {"time that increases from row to row"},
+        {"split runs with CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"}));
     return false;
   }
 
@@ -330,16 +334,16 @@ class CsvRowReader {
 
   void finish() {
     if (options_.missing == MissingValues::error && file_.missing > 0)
-      problems_.add(
-          Error(file_.first_missing,
-                file_.missing == 1 ? "a value is missing"
-                                   : std::to_string(file_.missing) + " values are missing, this is the first",
-                "a number in every cell",
-                "CsvOptions::missing = drop leaves such rows out, CsvOptions::missing = hold repeats the last value"));
+      problems_.add(detail::problem(
+          file_.first_missing,
+          {file_.missing == 1 ? "a value is missing"
+                              : std::to_string(file_.missing) + " values are missing, this is the first"},
+          {"a number in every cell"},
+          {"CsvOptions::missing = drop leaves such rows out, CsvOptions::missing = hold repeats the last value"}));
     else if (seen_rows_ == 0)
-      problems_.add(Error(file_.path, "has no rows", "at least one row of numbers"));
+      problems_.add(detail::problem(file_.path, {"has no rows"}, {"at least one row of numbers"}));
     else if (file_.rows == 0 && problems_.count() == 0)
-      problems_.add(Error(file_.path, "has no row without a missing value", "at least one"));
+      problems_.add(detail::problem(file_.path, {"has no row without a missing value"}, {"at least one"}));
   }
 
   CsvOptions options_;
