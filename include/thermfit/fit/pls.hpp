@@ -146,7 +146,8 @@ LinearFit<Scalar> fit_pls(const Moments<Scalar>& moments, const FitOptions& opti
                             detail::ExtractPls{});
 }
 
-/// The same row-wise (NIPALS): for condition numbers up to about 1e13 in double, 1e5 in float. Temperatures rows x
+/// The same row-wise (NIPALS): for condition numbers up to about 1e13 in double, 1e5 in float; a component whose
+/// covariance with the errors is rounding is not taken. Temperatures rows x
 /// points, errors rows x responses, um. Allocates copies.
 template <typename Temperatures, typename Errors, typename Scalar = typename Temperatures::Scalar>
 LinearFit<Scalar> fit_pls(const Eigen::MatrixBase<Temperatures>& temperatures, const Eigen::MatrixBase<Errors>& errors,

@@ -23,7 +23,7 @@ struct StandardisedMoments {
     const Scalar divisor = static_cast<Scalar>(rows - 1);
     const auto factor = [&](const VectorX<Scalar>& scale, Index offset) {
       VectorX<Scalar> result = scale.cwiseInverse();
-      for (Index c = 0; c < result.size(); ++c) result(c) *= moments.constant(offset + c) ? 0 : 1;
+      for (Index c = 0; c < result.size(); ++c) result(c) *= static_cast<Scalar>(moments.constant(offset + c) ? 0 : 1);
       return result;
     };
     const VectorX<Scalar> x = factor(channels.temperature_scale, 0);
