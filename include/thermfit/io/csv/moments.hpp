@@ -25,11 +25,12 @@ struct CsvMoments {
 
 /// Reads a file of any size in constant memory: 256 rows a batch at a time become moments. With
 /// TemperatureReference::rise temperatures count from the first row of their batch. Throws Error as read_rows does.
-inline CsvMoments read_moments(const std::string& path, CsvOptions options = {},
-                               TemperatureReference reference = TemperatureReference::rise) {
+template <typename Scalar = double>
+CsvMoments read_moments(const std::string& path, CsvOptions options = {},
+                        TemperatureReference reference = TemperatureReference::rise) {
   constexpr Index block_rows = 256;
   struct Growing {
-    Matrix temperatures, errors;
+    MatrixX<Scalar> temperatures, errors;
     Index filled = 0;
   };
   options.inputs = std::vector<std::string>{};
@@ -49,7 +50,8 @@ inline CsvMoments read_moments(const std::string& path, CsvOptions options = {},
       if (fresh) {
         result.batches.push_back(
             {std::string(row.batch), row.temperatures.transpose(), {row.temperatures.size(), row.errors.size()}});
-        growing.push_back({Matrix(block_rows, row.temperatures.size()), Matrix(block_rows, row.errors.size()), 0});
+        growing.push_back(
+            {MatrixX<Scalar>(block_rows, row.temperatures.size()), MatrixX<Scalar>(block_rows, row.errors.size()), 0});
       }
     }
     Growing& rows = growing[current];

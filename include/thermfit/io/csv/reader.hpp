@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/compiled.hpp"
 #include "thermfit/io/csv/rows.hpp"
 #include "thermfit/io/files/batch_digest.hpp"
 
@@ -30,12 +31,14 @@ struct GrowingBatch {
   Index held_values = 0;
 };
 
+/// The columns `names` of the rows, `width` values each, from the `first`th on.
 inline Channels channels(const std::vector<std::string>& names, const GrowingBatch& rows, std::size_t first,
                          std::size_t width) {
-  using RowMajor = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
-  const auto count = static_cast<Index>(rows.time_s.size());
-  const Eigen::Map<const RowMajor> all(rows.values.data(), count, static_cast<Index>(width));
-  return {names, all.middleCols(static_cast<Index>(first), static_cast<Index>(names.size()))};
+  Channels made{names, Matrix(static_cast<Index>(rows.time_s.size()), static_cast<Index>(names.size()))};
+  double* to = made.values.data();
+  for (std::size_t c = first; c < first + names.size(); ++c)
+    for (std::size_t row = 0; row < rows.time_s.size(); ++row) *to++ = rows.values[row * width + c];
+  return made;
 }
 
 inline std::string stem(const std::string& path) {
@@ -78,8 +81,10 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     Batch batch;
     batch.name = roles.batch.empty() ? stem(reader.file().path) : rows.key;
     batch.source = reader.file().path;
-    if (!roles.time.empty())
-      batch.time_s = Eigen::Map<const Vector>(rows.time_s.data(), static_cast<Index>(rows.time_s.size()));
+    if (!roles.time.empty()) {
+      batch.time_s.resize(static_cast<Index>(rows.time_s.size()));
+      std::copy(rows.time_s.begin(), rows.time_s.end(), batch.time_s.data());
+    }
     batch.temperatures = channels(roles.temperatures, rows, 0, width);
     batch.errors = channels(roles.errors, rows, roles.temperatures.size(), width);
     batch.inputs = channels(roles.inputs, rows, roles.temperatures.size() + roles.errors.size(), width);
@@ -108,9 +113,12 @@ inline void agree(const Channels& wanted, Channels& channels, const Batch& batch
                        " of ",
                    first.source},
                   {"the same in every batch: ", name_list(wanted.names)}, {"choose common ones with ", option});
-  Channels ordered{wanted.names, Matrix(channels.values.rows(), channels.values.cols())};
-  for (Index c = 0; c < wanted.count(); ++c)
-    ordered.values.col(c) = channels.values.col(channels.find(wanted.names[static_cast<std::size_t>(c)]));
+  const Index rows = channels.values.rows();
+  Channels ordered{wanted.names, Matrix(rows, channels.values.cols())};
+  for (Index c = 0; c < wanted.count(); ++c) {
+    const double* from = channels.values.data() + rows * channels.find(wanted.names[static_cast<std::size_t>(c)]);
+    std::copy(from, from + rows, ordered.values.data() + rows * c);
+  }
   channels = std::move(ordered);
 }
 
@@ -130,7 +138,8 @@ inline void make_names_differ(Campaign& batches) {
 /// Reads batches from files (`-`: standard input), in the order given. All have the same temperature points and errors,
 /// in the order of the first. Throws Error, or Errors with everything that is wrong in all files up to
 /// options.max_errors.
-inline CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions& options = {}) {
+template <typename Scalar = double>
+CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions& options = {}) {
   CsvReading reading;
   Problems problems(options.max_errors);
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -157,6 +166,8 @@ inline CsvReading read_campaign(const std::vector<std::string>& paths, const Csv
   detail::make_names_differ(reading.batches);
   return reading;
 }
+
+THERMFIT_COMPILED_TEMPLATE(CsvReading read_campaign<double>(const std::vector<std::string>&, const CsvOptions&));
 
 inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) const {
   std::vector<std::pair<std::string, std::vector<std::string>>> found;

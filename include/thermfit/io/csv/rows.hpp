@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "thermfit/compiled.hpp"
 #include "thermfit/io/csv/cell.hpp"
 #include "thermfit/io/csv/layout.hpp"
 #include "thermfit/io/csv/lines.hpp"
@@ -369,9 +370,9 @@ class CsvRowReader {
 /// Hands each row of a file to `row`, in constant memory; `begin` hears first what the columns mean. Rows with problems
 /// are not handed out; all problems are thrown at the end (or when there are `max_errors`), so a caller that throws
 /// away its sums on an exception uses good files only. Returns what was met.
-inline CsvFile read_rows(const std::string& path, const CsvOptions& options,
-                         const std::function<void(const CsvFile&)>& begin,
-                         const std::function<void(const CsvRow&)>& take_row) {
+template <typename Scalar = double>
+CsvFile read_rows(const std::string& path, const CsvOptions& options, const std::function<void(const CsvFile&)>& begin,
+                  const std::function<void(const CsvRow&)>& take_row) {
   Problems problems(options.max_errors);
   CsvRowReader reader(path, options, problems);
   if (begin) begin(reader.file());
@@ -380,5 +381,9 @@ inline CsvFile read_rows(const std::string& path, const CsvOptions& options,
   problems.throw_if_any();
   return reader.file();
 }
+
+THERMFIT_COMPILED_TEMPLATE(CsvFile read_rows<double>(const std::string&, const CsvOptions&,
+                                                     const std::function<void(const CsvFile&)>&,
+                                                     const std::function<void(const CsvRow&)>&));
 
 }  // namespace thermfit

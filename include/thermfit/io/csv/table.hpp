@@ -14,7 +14,8 @@ struct CsvTable {
 };
 
 /// Reads every column of numbers of a file, time too, in the order of the file; columns of text are left out.
-inline CsvTable read_table(const std::string& path, CsvOptions options = {}) {
+template <typename Scalar = double>
+CsvTable read_table(const std::string& path, CsvOptions options = {}) {
   options.time_column = "none";
   options.temperatures.clear();
   options.errors.clear();
@@ -29,7 +30,7 @@ inline CsvTable read_table(const std::string& path, CsvOptions options = {}) {
       });
   const auto columns = static_cast<Index>(table.names.size());
   const Index rows = columns == 0 ? 0 : static_cast<Index>(values.size()) / columns;
-  table.values = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(values.data(), rows, columns);
+  table.values = Eigen::Map<const RowMatrixX<Scalar>>(values.data(), rows, columns);
   return table;
 }
 

@@ -14,23 +14,24 @@ namespace thermfit {
 inline std::string batch_digest(const Batch& batch) {
   Sha256 digest;
   std::string bytes;
-  const auto add = [&](const std::string& name, const auto& values) {
+  const auto add = [&](const std::string& name, const double* values, Index count) {
     bytes.assign(name).push_back('\0');
     const std::size_t begin = bytes.size();
-    bytes.resize(begin + 8 * static_cast<std::size_t>(values.size()));
+    bytes.resize(begin + 8 * static_cast<std::size_t>(count));
     char* to = bytes.data() + begin;
-    for (Index row = 0; row < values.size(); ++row) {
+    for (Index row = 0; row < count; ++row) {
       std::uint64_t bits;
-      const double value = values(row) + 0.0;  // -0 counts as 0
+      const double value = values[row] + 0.0;  // -0 counts as 0
       std::memcpy(&bits, &value, sizeof bits);
       for (int shift = 0; shift < 64; shift += 8) *to++ = static_cast<char>(bits >> shift);
     }
     digest.update(bytes);
   };
-  add("time_s", batch.time_s);
+  add("time_s", batch.time_s.data(), batch.time_s.size());
   for (const Channels* channels : {&batch.temperatures, &batch.errors, &batch.inputs})
     for (Index c = 0; c < channels->count(); ++c)
-      add(channels->names[static_cast<std::size_t>(c)], channels->values.col(c));
+      add(channels->names[static_cast<std::size_t>(c)], channels->values.data() + c * channels->values.rows(),
+          channels->values.rows());
   return digest.hex();
 }
 

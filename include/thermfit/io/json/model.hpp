@@ -18,29 +18,30 @@ namespace detail {
 constexpr Index most_sensors = 2000, most_errors = 100;
 
 /// Puts the fields that `describe_model` names into a JSON object.
+template <typename J>
 class ModelWriter {
  public:
-  explicit ModelWriter(Json& object) : object_(object) {}
+  explicit ModelWriter(J& object) : object_(object) {}
   void text(const char* key, const std::string& value) { object_[key] = value; }
   void texts(const char* key, const std::vector<std::string>& values, Index) { object_[key] = values; }
   void choice(const char* key, std::string& value, const std::vector<std::string>&) { object_[key] = value; }
   void integer(const char* key, Index value, Index) { object_[key] = value; }
-  void number(const char* key, double value) { object_[key] = std::isfinite(value) ? Json(value) : Json(); }
-  void vector(const char* key, const Vector& values, Index) { object_[key] = to_json(values); }
-  void matrix(const char* key, const Matrix& values, Index, Index) { object_[key] = to_json(values); }
+  void number(const char* key, double value) { object_[key] = std::isfinite(value) ? J(value) : J(); }
+  void vector(const char* key, const Vector& values, Index) { object_[key] = to_json<J>(values); }
+  void matrix(const char* key, const Matrix& values, Index, Index) { object_[key] = to_json<J>(values); }
   template <class Describe>
   void object(const char* key, bool present, Describe describe) {
     if (!present) return;
-    Json inner = Json::object();
+    J inner = J::object();
     ModelWriter writer(inner);
     describe(writer);
     object_[key] = std::move(inner);
   }
   template <class Item, class Describe>
   void list(const char* key, std::vector<Item>& items, Index, Describe describe) {
-    Json list = Json::array();
+    J list = J::array();
     for (Item& item : items) {
-      Json inner = Json::object();
+      J inner = J::object();
       ModelWriter writer(inner);
       describe(writer, item);
       list.push_back(std::move(inner));
@@ -49,13 +50,16 @@ class ModelWriter {
   }
 
  private:
-  Json& object_;
+  J& object_;
 };
 
 /// Takes the same fields out of a JSON object, checking type, range, length and that no other key is there.
+template <typename J>
 class ModelReader {
  public:
-  explicit ModelReader(JsonNode node, std::vector<std::string> other_keys = {})
+  using Node = BasicJsonNode<J>;
+
+  explicit ModelReader(Node node, std::vector<std::string> other_keys = {})
       : node_(std::move(node)), keys_(std::move(other_keys)) {}
   void text(const char* key, std::string& value) { value = at(key).text(); }
   void texts(const char* key, std::vector<std::string>& values, Index most) {
@@ -70,7 +74,7 @@ class ModelReader {
   }
   void integer(const char* key, Index& value, Index most) { value = at(key).integer(0, most); }
   void number(const char* key, double& value) {
-    const JsonNode node = at(key);
+    const Node node = at(key);
     value = node.json().is_null() ? std::numeric_limits<double>::infinity() : node.number();
   }
   void vector(const char* key, Vector& values, Index length) { values = at(key).vector(length); }
@@ -84,7 +88,7 @@ class ModelReader {
   }
   template <class Item, class Describe>
   void list(const char* key, std::vector<Item>& items, Index most, Describe describe) {
-    const JsonNode node = at(key);
+    const Node node = at(key);
     items.resize(node.size(static_cast<std::size_t>(most)));
     for (std::size_t i = 0; i < items.size(); ++i) {
       ModelReader reader(node.item(i));
@@ -95,12 +99,12 @@ class ModelReader {
   void finish() const { node_.require_keys(keys_); }
 
  private:
-  JsonNode at(const char* key) {
+  Node at(const char* key) {
     keys_.emplace_back(key);
     return node_.at(key);
   }
 
-  JsonNode node_;
+  Node node_;
   std::vector<std::string> keys_;
 };
 
@@ -180,7 +184,8 @@ void describe_model(Archive& io, TrainedModel& m) {
   });
 }
 
-inline std::string model_digest(Json document) {
+template <typename J>
+std::string model_digest(J document) {
   document.erase("digest");
   return "sha256:" + sha256_hex(document.dump());
 }
@@ -188,9 +193,10 @@ inline std::string model_digest(Json document) {
 }  // namespace detail
 
 /// The document of a model, digest included. Allocates.
-inline Json model_to_json(TrainedModel model) {
-  Json document{{"format", "thermfit-model/1"}};
-  detail::ModelWriter writer(document);
+template <typename J = Json>
+J model_to_json(TrainedModel model) {
+  J document{{"format", "thermfit-model/1"}};
+  detail::ModelWriter<J> writer(document);
   detail::describe_model(writer, model);
   document["digest"] = detail::model_digest(document);
   return document;
@@ -198,11 +204,12 @@ inline Json model_to_json(TrainedModel model) {
 
 /// A model from its document. Throws Error with the key path on a wrong format or version, an unknown or missing key, a
 /// value of another type, length or range, and when the digest tells that the document was edited or damaged.
-inline TrainedModel model_from_json(const Json& document, const std::string& file) {
-  const JsonNode root(document, file);
+template <typename J = Json>
+TrainedModel model_from_json(const J& document, const std::string& file) {
+  const BasicJsonNode<J> root(document, file);
   root.require_format("thermfit-model", 1);
   TrainedModel model;
-  detail::ModelReader reader(root, {"format", "digest"});
+  detail::ModelReader<J> reader(root, {"format", "digest"});
   detail::describe_model(reader, model);
   reader.finish();
   const std::string digest = root.at("digest").text();
@@ -210,7 +217,8 @@ inline TrainedModel model_from_json(const Json& document, const std::string& fil
     root.at("digest").fail("the digest does not fit the content", "",
                            "the file was edited or damaged: fit the model again");
   const auto positive = [&](const Vector& values, const char* name) {
-    if ((values.array() <= 0).any()) root.fail(std::string(name) + " holds a value that is not above 0");
+    for (Index i = 0; i < values.size(); ++i)
+      if (values(i) <= 0) root.fail(std::string(name) + " holds a value that is not above 0");
   };
   positive(model.temperature_scale, "temperature_scale");
   positive(model.error_scale, "error_scale_um");
@@ -219,11 +227,21 @@ inline TrainedModel model_from_json(const Json& document, const std::string& fil
   return model;
 }
 
-/// Saves so that a reader sees the old file or the whole new one.
-inline void save_model(const TrainedModel& model, const std::string& path) {
-  write_atomically(path, model_to_json(model).dump(1) + '\n');
+/// Saves so that a reader sees the old file or the whole new one. Throws Error when it cannot be written.
+template <typename J = Json>
+void save_model(const TrainedModel& model, const std::string& path) {
+  write_atomically(path, model_to_json<J>(model).dump(1) + '\n');
 }
 
-inline TrainedModel load_model(const std::string& path) { return model_from_json(read_json(path), path); }
+/// The model in a file; throws Error also when the file cannot be read or is no JSON.
+template <typename J = Json>
+TrainedModel load_model(const std::string& path) {
+  return model_from_json<J>(read_json<J>(path), path);
+}
+
+THERMFIT_COMPILED_TEMPLATE(Json model_to_json<Json>(TrainedModel));
+THERMFIT_COMPILED_TEMPLATE(TrainedModel model_from_json<Json>(const Json&, const std::string&));
+THERMFIT_COMPILED_TEMPLATE(void save_model<Json>(const TrainedModel&, const std::string&));
+THERMFIT_COMPILED_TEMPLATE(TrainedModel load_model<Json>(const std::string&));
 
 }  // namespace thermfit

@@ -1,35 +1,46 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/types.hpp"
+
+// With the compiled library a file that only reads and saves machines and models needs no word of nlohmann-json; one
+// that looks into documents includes it itself.
+#if defined(THERMFIT_COMPILED)
+#include <nlohmann/json_fwd.hpp>
+#else
+#include <nlohmann/json.hpp>
+#endif
 
 namespace thermfit {
 
 /// JSON that keeps its keys in the order they were written.
 using Json = nlohmann::ordered_json;
 
-/// A value in a JSON document together with its key path, so that every complaint can say where.
+/// A value in a JSON document (of nlohmann's type `J`) together with its key path, so that every complaint can say
+/// where.
 ///
 /// Refers to the document, which must live longer. Each accessor checks type, finiteness and range and throws
 /// Error("file: key.path[3].name", what was found, what is allowed) otherwise.
-class JsonNode {
+template <typename J>
+class BasicJsonNode {
  public:
-  JsonNode(const Json& value, std::string file, std::string path = {})
+  BasicJsonNode(const J& value, std::string file, std::string path = {})
       : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
 
-  const Json& json() const { return *value_; }
+  const J& json() const { return *value_; }
   std::string place() const { return path_.empty() ? file_ : file_ + ": " + path_; }
   [[noreturn]] void fail(const std::string& found, const std::string& allowed = {},
                          const std::string& remedy = {}) const {
@@ -37,7 +48,7 @@ class JsonNode {
   }
 
   /// An object with no keys but these.
-  const JsonNode& require_keys(const std::vector<std::string>& allowed) const {
+  const BasicJsonNode& require_keys(const std::vector<std::string>& allowed) const {
     require(value_->is_object(), "an object");
     for (const auto& [key, unused] : value_->items()) {
       bool known = false;
@@ -48,14 +59,14 @@ class JsonNode {
     return *this;
   }
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
-  JsonNode at(const std::string& key) const {
+  BasicJsonNode at(const std::string& key) const {
     require(value_->is_object(), "an object");
     const auto it = value_->find(key);
     if (it == value_->end()) fail("key '" + key + "' is missing");
     return {*it, file_, path_.empty() ? key : path_ + '.' + key};
   }
-  std::optional<JsonNode> find(const std::string& key) const {
-    return has(key) ? std::optional<JsonNode>(at(key)) : std::nullopt;
+  std::optional<BasicJsonNode> find(const std::string& key) const {
+    return has(key) ? std::optional<BasicJsonNode>(at(key)) : std::nullopt;
   }
 
   /// Length of an array of at most `most` items.
@@ -65,12 +76,12 @@ class JsonNode {
       fail("a list of " + std::to_string(value_->size()) + " entries", "at most " + std::to_string(most));
     return value_->size();
   }
-  JsonNode item(std::size_t i) const { return {(*value_)[i], file_, path_ + '[' + std::to_string(i) + ']'}; }
+  BasicJsonNode item(std::size_t i) const { return {(*value_)[i], file_, path_ + '[' + std::to_string(i) + ']'}; }
 
   double number(double lowest = -std::numeric_limits<double>::max(),
                 double highest = std::numeric_limits<double>::max()) const {
     require(value_->is_number(), range("a number", lowest, highest));
-    const double value = value_->get<double>();
+    const double value = value_->template get<double>();
     if (!(value >= lowest && value <= highest)) fail("value " + exact_text(value), range("a number", lowest, highest));
     return value;
   }
@@ -83,19 +94,19 @@ class JsonNode {
   Index integer(Index lowest, Index highest) const {
     const std::string allowed = "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
     require(value_->is_number_integer(), allowed);
-    const bool above_signed = value_->is_number_unsigned() && value_->get<std::uint64_t>() > INT64_MAX;
-    const Index value = above_signed ? highest : value_->get<Index>();
+    const bool above_signed = value_->is_number_unsigned() && value_->template get<std::uint64_t>() > INT64_MAX;
+    const Index value = above_signed ? highest : value_->template get<Index>();
     if (above_signed || value < lowest || value > highest) fail("value " + value_->dump(), allowed);
     return value;
   }
   bool boolean() const {
     require(value_->is_boolean(), "true or false");
-    return value_->get<bool>();
+    return value_->template get<bool>();
   }
   /// Text of at most `most` bytes, without control characters.
   std::string text(std::size_t most = 1000) const {
     require(value_->is_string(), "a text");
-    std::string value = value_->get<std::string>();
+    std::string value = value_->template get<std::string>();
     if (value.size() > most)
       fail("a text of " + std::to_string(value.size()) + " bytes", "at most " + std::to_string(most));
     for (const char c : value)
@@ -127,7 +138,10 @@ class JsonNode {
     if (static_cast<Index>(size()) != rows)
       fail("a list of " + std::to_string(size()) + " rows", "exactly " + std::to_string(rows));
     Matrix values(rows, columns);
-    for (Index i = 0; i < rows; ++i) values.row(i) = item(static_cast<std::size_t>(i)).vector(columns).transpose();
+    for (Index i = 0; i < rows; ++i) {
+      const Vector row = item(static_cast<std::size_t>(i)).vector(columns);
+      for (Index j = 0; j < columns; ++j) values(i, j) = row(j);
+    }
     return values;
   }
 
@@ -156,25 +170,29 @@ class JsonNode {
            (bounded_above ? " up to " + exact_text(highest) : "");
   }
 
-  const Json* value_;
+  const J* value_;
   std::string file_, path_;
 };
 
+using JsonNode = BasicJsonNode<Json>;
+
 /// Parses JSON text; `file` names it in errors. Syntax errors become Error("file:line:column", …); a key given twice,
 /// nesting deeper than 64 and text that is not UTF-8 are errors too.
-inline Json parse_json(const std::string& text, const std::string& file) {
+template <typename J = Json>
+J parse_json(const std::string& text, const std::string& file) {
   std::vector<std::set<std::string>> keys;
-  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+  const auto watch = [&](int depth, typename J::parse_event_t event, J& parsed) {
     if (depth > 64) throw Error(file, "JSON nested deeper than 64 levels");
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      throw Error(file, "key '" + parsed.get<std::string>() + "' is given twice in one object", "", "remove one");
+    if (event == J::parse_event_t::object_start) keys.emplace_back();
+    if (event == J::parse_event_t::object_end) keys.pop_back();
+    if (event == J::parse_event_t::key && !keys.back().insert(parsed.template get<std::string>()).second)
+      throw Error(file, "key '" + parsed.template get<std::string>() + "' is given twice in one object", "",
+                  "remove one");
     return true;
   };
   try {
-    return Json::parse(text, watch);
-  } catch (const Json::parse_error& error) {
+    return J::parse(text, watch);
+  } catch (const typename J::parse_error& error) {
     const std::size_t at = std::min(error.byte ? error.byte - 1 : 0, text.size());
     const std::size_t line =
         1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
@@ -182,13 +200,14 @@ inline Json parse_json(const std::string& text, const std::string& file) {
     const std::string place = file + ':' + std::to_string(line) + ':' + std::to_string(at - start + 1);
     if (at >= text.size()) throw Error(place, "the document ends too early", "complete JSON", "is the file cut off?");
     throw Error(place, "not JSON here", "JSON (RFC 8259)", "mend the syntax");
-  } catch (const Json::exception& error) {
+  } catch (const typename J::exception& error) {
     throw Error(file, error.what());
   }
 }
 
 /// The JSON document in a file of at most `most_bytes`.
-inline Json read_json(const std::string& path, std::size_t most_bytes = std::size_t{64} << 20) {
+template <typename J = Json>
+J read_json(const std::string& path, std::size_t most_bytes = std::size_t{64} << 20) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(path, "cannot be opened", "", "check the path and its permissions");
   std::string text;
@@ -199,15 +218,26 @@ inline Json read_json(const std::string& path, std::size_t most_bytes = std::siz
       throw Error(path, "the file is larger than " + std::to_string(most_bytes >> 20) + " MiB");
   }
   if (file.bad() || !file.eof()) throw Error(path, "cannot be read", "", "is it a folder?");
-  return parse_json(text, path);
+  return parse_json<J>(text, path);
 }
 
 /// A vector or matrix as JSON lists; numbers keep 17 digits where they need them.
-inline Json to_json(const Vector& values) { return std::vector<double>(values.data(), values.data() + values.size()); }
-inline Json to_json(const Matrix& values) {
-  Json rows = Json::array();
-  for (Index i = 0; i < values.rows(); ++i) rows.push_back(to_json(Vector(values.row(i).transpose())));
+template <typename J = Json>
+J to_json(const Vector& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+template <typename J = Json>
+J to_json(const Matrix& values) {
+  J rows = J::array();
+  for (Index i = 0; i < values.rows(); ++i) {
+    std::vector<double> row;
+    for (Index j = 0; j < values.cols(); ++j) row.push_back(values(i, j));
+    rows.push_back(std::move(row));
+  }
   return rows;
 }
+
+THERMFIT_COMPILED_TEMPLATE(Json parse_json<Json>(const std::string&, const std::string&));
+THERMFIT_COMPILED_TEMPLATE(Json read_json<Json>(const std::string&, std::size_t));
 
 }  // namespace thermfit
