@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/constants.hpp"
 #include "thermfit/effects/output_traces.hpp"
 #include "thermfit/effects/place.hpp"
 #include "thermfit/effects/setting.hpp"
@@ -202,14 +203,14 @@ class Radiation : public Effect {
     for (const Index node : nodes_at(network, added.location))
       system.drive_conductance(system.ambient_element(node), {node}, [node](const Moment& now, const double* p) {
         const double felt_K = now.ambient->felt_rise(at_least_a_second(p[1]), now.time_s);
-        const double wall = now.first_ambient_degC + felt_K + 273.15;
-        const double part = now.temperature_degC[node] + 273.15;
+        const double wall = now.first_ambient_degC + felt_K + ice_point_K;
+        const double part = now.temperature_degC[node] + ice_point_K;
         return p[0] * (wall - part) * (wall + part) * (wall * wall + part * part) / (4 * 293.15 * 293.15 * 293.15);
       });
   }
   void trace(OutputTraces& traces) const override {
     if (!traces.has_room()) return;
-    const auto fourth_power = [](double degC) { return std::pow((degC + 273.15) / 293.15, 4); };
+    const auto fourth_power = [](double degC) { return std::pow((degC + ice_point_K) / 293.15, 4); };
     for (const Index c : traces.thermometers())
       traces
           .heat_flow(traces.name(c), "",
