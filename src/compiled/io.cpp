@@ -1,14 +1,11 @@
-// io/ compiled ahead: files in, files out. What lies below comes from the other files of this library.
-#include "thermfit/compiled.hpp"
-#include "thermfit/model/trained_model.hpp"
-#include "thermfit/moments/moments.hpp"
-#include "thermfit/network/thermal_network.hpp"
+// The instances of io/ that thermfit::compiled holds: files in, files out. What lies below is compiled elsewhere.
+#include "thermfit/simulation.hpp"
+#include "thermfit/study.hpp"
 
 #undef THERMFIT_COMPILED_ELSEWHERE
 #define THERMFIT_COMPILED_ELSEWHERE
 
-#include <nlohmann/json.hpp>
-
+#include "thermfit/io/csv/moments.hpp"
 #include "thermfit/io/csv/reader.hpp"
 #include "thermfit/io/json/campaign.hpp"
 #include "thermfit/io/json/machine.hpp"

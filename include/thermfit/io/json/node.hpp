@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,14 +16,6 @@
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/types.hpp"
-
-// With the compiled library a file that only reads and saves machines and models needs no word of nlohmann-json; one
-// that looks into documents includes it itself.
-#if defined(THERMFIT_COMPILED)
-#include <nlohmann/json_fwd.hpp>
-#else
-#include <nlohmann/json.hpp>
-#endif
 
 namespace thermfit {
 
