@@ -1,4 +1,5 @@
 // The instances of diagnosis/search/ that thermfit::compiled holds; what lies below is compiled elsewhere.
+#include "thermfit/calibration/held_out.hpp"
 #include "thermfit/findings/findings.hpp"
 #include "thermfit/simulation.hpp"
 #include "thermfit/statistics/follows.hpp"
