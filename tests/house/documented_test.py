@@ -16,16 +16,11 @@ NOT_YET = [
     "diagnosis/search",
     "diagnosis/where",
     "effects",
-    "fit",
     "io",
     "io/csv",
     "io/files",
     "io/json",
-    "model",
-    "moments",
     "network",
-    "robustness",
-    "select",
 ]
 
 source = pathlib.Path(sys.argv[1]).resolve()

@@ -12,11 +12,11 @@ namespace thermfit {
 /// What every fit returns: the model in um and K, and how it came about.
 template <typename Scalar = double>
 struct LinearFit {
-  LinearModel<Scalar> model;
+  LinearModel<Scalar> model;                  ///< in um and K
   MatrixX<Scalar> standardised_coefficients;  ///< points x responses
-  Standardisation<Scalar> channels;
-  Index rows = 0;
-  Index rank = 0;                  ///< independent directions among the temperatures
+  Standardisation<Scalar> channels;           ///< means and scales of the rows of the fit
+  Index rows = 0;                             ///< that were fitted
+  Index rank = 0;                             ///< independent directions among the temperatures
   Scalar condition_number = 1;     ///< largest over smallest singular value of the standardised temperatures, among
                                    ///< the `rank` independent directions
   Index components = 0;            ///< latent variables used; 0 for MLR and ridge
@@ -27,19 +27,22 @@ struct LinearFit {
   VectorX<Scalar> residual_deviation_um;  ///< S of eq. (10) per error, on the rows of the fit
 };
 
-/// A fitter may return a LinearFit or the bare LinearModel: either as a model, either as a fit.
+/// The model of what a fitter returned: a LinearFit or the bare LinearModel.
 template <typename Scalar>
 const LinearModel<Scalar>& model_of(const LinearFit<Scalar>& fit) {
   return fit.model;
 }
+/// A bare model is its own.
 template <typename Scalar>
 const LinearModel<Scalar>& model_of(const LinearModel<Scalar>& model) {
   return model;
 }
+/// A fit is its own.
 template <typename Scalar>
 LinearFit<Scalar> fit_of(LinearFit<Scalar> fit) {
   return fit;
 }
+/// A bare model as a fit of which nothing else is known.
 template <typename Scalar>
 LinearFit<Scalar> fit_of(LinearModel<Scalar> model) {
   LinearFit<Scalar> fit;

@@ -16,19 +16,27 @@ enum class Scaling {
 
 /// When to stop taking latent variables.
 struct ComponentRule {
-  enum class Kind { explained, fixed, leave_one_batch_out };
-  Kind kind = Kind::explained;
-  Index count = 0;          ///< fixed: how many; leave_one_batch_out: at most how many, 0 for no bound
-  double enough = .90;      ///< explained: share of temperature variance beyond which to stop
-  double least_gain = .05;  ///< explained: gain of one more below which it is not taken
+  /// What decides.
+  enum class Kind {
+    explained,           ///< the share of temperature variance that the components explain
+    fixed,               ///< the number asked for
+    leave_one_batch_out  ///< the error on batches left out
+  };
+  Kind kind = Kind::explained;  ///< which of them
+  Index count = 0;              ///< fixed: how many; leave_one_batch_out: at most how many, 0 for no bound
+  double enough = .90;          ///< explained: share of temperature variance beyond which to stop
+  double least_gain = .05;      ///< explained: gain of one more below which it is not taken
+  /// The paper's: until 90 % are explained, or one more would add less than 5 %.
   static ComponentRule paper() { return {}; }
+  /// Exactly `count`, or as many as the rank allows.
   static ComponentRule fixed(Index count) { return {Kind::fixed, count}; }
+  /// As many as predict left-out batches best, at most `at_most` (0: no bound).
   static ComponentRule leave_one_batch_out(Index at_most = 0) { return {Kind::leave_one_batch_out, at_most}; }
 };
 
 /// Settings of a fit; every method reads those that concern it.
 struct FitOptions {
-  Scaling scaling = Scaling::both;
+  Scaling scaling = Scaling::both;                    ///< PLS, PCR and ridge; MLR is the same under any
   ComponentRule components = ComponentRule::paper();  ///< PLS and PCR
   std::optional<double> ridge_lambda;                 ///< ridge; none: chosen by leaving one batch out
 };

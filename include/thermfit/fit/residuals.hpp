@@ -12,10 +12,11 @@ namespace thermfit {
 /// What a model leaves unexplained of one error over some rows: prediction minus measurement, um.
 template <typename Scalar = double>
 struct Residuals {
-  Index rows = 0;
+  Index rows = 0;             ///< how many there were
   Scalar mean = 0;            ///< bias, um
   Scalar centred_square = 0;  ///< sum of squared deviations from that mean, um^2
 
+  /// About zero, not about the mean, um^2.
   Scalar sum_of_squares() const { return centred_square + static_cast<Scalar>(rows) * mean * mean; }
 
   /// Residual standard deviation of eq. (10): sqrt(sum (prediction - measurement)^2 / (n - 1)); needs two rows.

@@ -12,7 +12,10 @@ namespace thermfit {
 /// z = (value - mean) / scale per channel. Scale is 1 where nothing is scaled and for constant channels.
 template <typename Scalar = double>
 struct Standardisation {
-  VectorX<Scalar> temperature_mean, temperature_scale, error_mean, error_scale;
+  VectorX<Scalar> temperature_mean;   ///< per point, K of rise or degC
+  VectorX<Scalar> temperature_scale;  ///< per point, K
+  VectorX<Scalar> error_mean;         ///< per response, um
+  VectorX<Scalar> error_scale;        ///< per response, um
 
   /// The model in um and K of standardised coefficients (points x responses):
   /// `coefficient_ij = b_ij error_scale_j / temperature_scale_i`, intercepts so that the means agree. Allocates it.

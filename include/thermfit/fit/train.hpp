@@ -16,11 +16,11 @@ namespace thermfit {
 
 /// What to train: the answers of a user who has chosen method and points.
 struct TrainingPlan {
-  Method method = Method::pls;
-  FitOptions options;
+  Method method = Method::pls;      ///< which of the four
+  FitOptions options;               ///< components, penalty, scaling
   std::vector<Index> points;        ///< temperature columns, in coefficient order; empty: all
   std::string selection = "given";  ///< how they were chosen, for the record
-  TemperatureReference reference = TemperatureReference::rise;
+  TemperatureReference reference = TemperatureReference::rise;  ///< what the model's temperatures are measured from
   bool row_wise = false;  ///< QR and NIPALS on all rows instead of moments, for ill-conditioned data
 };
 

@@ -7,10 +7,13 @@ namespace thermfit {
 /// The latent variables behind a PLS or PCR model, in standardised units; empty for MLR and ridge.
 template <typename Scalar = double>
 struct LatentVariables {
-  MatrixX<Scalar> weights, loadings, rotations;                              ///< sensors x components
-  MatrixX<Scalar> error_loadings;                                            ///< errors x components
-  VectorX<Scalar> explained_temperature_variance, explained_error_variance;  ///< cumulative share per component, 0…1
-  VectorX<Scalar> vip;                                                       ///< per sensor
+  MatrixX<Scalar> weights;                         ///< sensors x components
+  MatrixX<Scalar> loadings;                        ///< sensors x components
+  MatrixX<Scalar> rotations;                       ///< sensors x components
+  MatrixX<Scalar> error_loadings;                  ///< errors x components
+  VectorX<Scalar> explained_temperature_variance;  ///< cumulative share per component, 0…1
+  VectorX<Scalar> explained_error_variance;        ///< cumulative share per component, 0…1
+  VectorX<Scalar> vip;                             ///< per sensor
 
   /// The same, rounded to Other.
   template <typename Other>

@@ -10,10 +10,12 @@ namespace thermfit {
 /// `coefficients` is Sensors x Errors in um/K, `intercept` is Errors long in um.
 template <class Scalar = double, int Sensors = Eigen::Dynamic, int Errors = Eigen::Dynamic>
 struct LinearModel {
-  Eigen::Matrix<Scalar, Sensors, Errors> coefficients;
-  Eigen::Matrix<Scalar, Errors, 1> intercept;
+  Eigen::Matrix<Scalar, Sensors, Errors> coefficients;  ///< Sensors x Errors, um/K
+  Eigen::Matrix<Scalar, Errors, 1> intercept;           ///< Errors long, um
 
+  /// How many temperatures it reads.
   Index sensors() const noexcept { return coefficients.rows(); }
+  /// How many errors it predicts.
   Index errors() const noexcept { return coefficients.cols(); }
 
   /// One sample: temperatures (Sensors long; K of rise or degC, as the model was fitted) to errors in um.

@@ -10,6 +10,7 @@ struct OutsideDomain {
   bool range = false;  ///< a point below its lowest or above its highest training value
   bool t2 = false;     ///< familiar relations between the points, but further out
   bool spe = false;    ///< relations between the points that training did not show
+  /// Outside in any way.
   bool any() const { return range || t2 || spe; }
 };
 
@@ -37,7 +38,10 @@ OutsideDomain outside_domain(const TrainingDomain<Scalar, Sensors, Components>& 
 
 /// Shares of rows outside the training domain, 0…1.
 struct OutsideShares {
-  double range = 0, t2 = 0, spe = 0, any = 0;
+  double range = 0;  ///< beyond the range of a point
+  double t2 = 0;     ///< beyond the limit of T2
+  double spe = 0;    ///< beyond the limit of SPE
+  double any = 0;    ///< beyond any of them
 };
 
 /// Over rows x sensors of the model's temperatures; all 0 without rows.

@@ -14,11 +14,14 @@ namespace thermfit {
 ///
 /// One entry per sensor in every member; all empty when unknown, the last two also where no batch has a clock.
 struct SensorEnvelope {
-  Vector lowest_degC, highest_degC;  ///< absolute readings, also for models on temperature rise
-  Vector largest_rate_K_per_min;     ///< between neighbouring samples
-  Vector longest_still_min;          ///< longest time without any change of the reading
+  Vector lowest_degC;             ///< absolute readings, also for models on temperature rise
+  Vector highest_degC;            ///< absolute readings, also for models on temperature rise
+  Vector largest_rate_K_per_min;  ///< between neighbouring samples
+  Vector longest_still_min;       ///< longest time without any change of the reading
 
+  /// Whether lowest and highest are known.
   bool has_range() const { return lowest_degC.size() > 0; }
+  /// Whether rates and still times are known.
   bool has_rates() const { return largest_rate_K_per_min.size() > 0; }
 };
 

@@ -13,8 +13,8 @@ namespace thermfit {
 
 /// A batch a model was trained on, so that the model can be traced to its data.
 struct TrainingBatch {
-  std::string name;
-  Index rows = 0;
+  std::string name;    ///< of the batch
+  Index rows = 0;      ///< it had
   std::string digest;  ///< SHA-256 of the numbers, hex
 };
 
@@ -27,26 +27,29 @@ struct SubstituteModel {
 
 /// A linear model with everything a predictor needs and where it came from: the in-memory `thermfit-model/1`.
 struct TrainedModel {
-  std::string method;     ///< "pls", "mlr", "pcr", "ridge"
-  std::string selection;  ///< how the points were chosen: "correlation", "fcgr", "given", "all"
-  Index components = 0;   ///< latent variables used; 0 for MLR and ridge
-  double ridge_lambda = 0;
+  std::string method;                     ///< "pls", "mlr", "pcr", "ridge"
+  std::string selection;                  ///< how the points were chosen: "correlation", "fcgr", "given", "all"
+  Index components = 0;                   ///< latent variables used; 0 for MLR and ridge
+  double ridge_lambda = 0;                ///< penalty; 0 for the others
   std::vector<std::string> temperatures;  ///< chosen points, in coefficient order
   std::vector<std::string> errors;        ///< responses, in coefficient order
-  TemperatureReference reference = TemperatureReference::rise;
+  TemperatureReference reference = TemperatureReference::rise;  ///< what its temperatures are measured from
 
-  LinearModel<> model;               ///< raw units: um, um/K
-  Matrix standardised_coefficients;  ///< sensors x errors
-  Vector temperature_mean, temperature_scale, error_mean, error_scale;
-  LatentVariables<> latent;
-  Vector residual_deviation_um;  ///< per error, S of eq. (10) on the training rows
-  Index degrees_of_freedom = 0;
-  double condition_number = 0;  ///< of the standardised temperatures
-  TrainingDomain<> domain;
+  LinearModel<> model;                       ///< raw units: um, um/K
+  Matrix standardised_coefficients;          ///< sensors x errors
+  Vector temperature_mean;                   ///< per sensor, K of rise or degC
+  Vector temperature_scale;                  ///< per sensor, K
+  Vector error_mean;                         ///< per error, um
+  Vector error_scale;                        ///< per error, um
+  LatentVariables<> latent;                  ///< PLS and PCR; empty for the others
+  Vector residual_deviation_um;              ///< per error, S of eq. (10) on the training rows
+  Index degrees_of_freedom = 0;              ///< of the residuals, rounded
+  double condition_number = 0;               ///< of the standardised temperatures
+  TrainingDomain<> domain;                   ///< where it may be trusted
   SensorEnvelope envelope;                   ///< of the chosen points, absolute; empty when unknown
   std::vector<SubstituteModel> substitutes;  ///< one per sensor, or none
-  std::vector<TrainingBatch> batches;
-  std::string tool_version;
+  std::vector<TrainingBatch> batches;        ///< it was trained on
+  std::string tool_version;                  ///< of the library that trained it
 };
 
 }  // namespace thermfit

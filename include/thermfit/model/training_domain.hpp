@@ -19,14 +19,21 @@ struct DomainDistance {
 /// Sensors x Components. Fixed sizes neither allocate nor throw: this is controller code.
 template <class Scalar = double, int Sensors = Eigen::Dynamic, int Components = Eigen::Dynamic>
 struct TrainingDomain {
+  /// One number per sensor.
   using PerSensor = Eigen::Matrix<Scalar, Sensors, 1>;
-  PerSensor lowest, highest;  ///< range seen in training
-  PerSensor mean, scale;
-  Eigen::Matrix<Scalar, Sensors, Components> rotations, loadings;
-  Eigen::Matrix<Scalar, Components, 1> score_variance;
-  Scalar t2_limit_95 = 0, t2_limit_99 = 0;    ///< for a new observation
-  Scalar spe_limit_95 = 0, spe_limit_99 = 0;  ///< 0 where the components span all sensors: then SPE is 0 too
+  PerSensor lowest;                                      ///< of the range seen in training
+  PerSensor highest;                                     ///< of the range seen in training
+  PerSensor mean;                                        ///< of the training rows
+  PerSensor scale;                                       ///< that temperatures are divided by
+  Eigen::Matrix<Scalar, Sensors, Components> rotations;  ///< standardised temperatures to scores
+  Eigen::Matrix<Scalar, Sensors, Components> loadings;   ///< scores to standardised temperatures
+  Eigen::Matrix<Scalar, Components, 1> score_variance;   ///< per component, divisor rows - 1
+  Scalar t2_limit_95 = 0;                                ///< for a new observation
+  Scalar t2_limit_99 = 0;                                ///< for a new observation
+  Scalar spe_limit_95 = 0;                               ///< 0 where the components span all sensors: then SPE is 0 too
+  Scalar spe_limit_99 = 0;                               ///< 0 where the components span all sensors: then SPE is 0 too
 
+  /// T2 and SPE of one sample of the model's temperatures (Sensors long).
   template <class Temperatures>
   DomainDistance<Scalar> distance(const Eigen::MatrixBase<Temperatures>& temperatures) const noexcept {
     PerSensor z = (temperatures - mean).cwiseQuotient(scale);

@@ -41,20 +41,27 @@ class Moments {
     add_rows(temperatures, errors);
   }
 
+  /// Rows seen.
   Index rows() const { return rows_; }
+  /// Temperature points.
   Index temperatures() const { return temperatures_; }
+  /// Responses.
   Index errors() const { return mean_.size() - temperatures_; }
 
-  /// Per point or response, in the units of the rows.
+  /// Per point, K of rise or degC.
   auto temperature_mean() const { return mean_.head(temperatures_); }
+  /// Per response, um.
   auto error_mean() const { return mean_.tail(errors()); }
+  /// Per point: the lowest value seen.
   auto temperature_lowest() const { return lowest_.head(temperatures_); }
+  /// Per point: the highest value seen.
   auto temperature_highest() const { return highest_.head(temperatures_); }
 
-  /// Sums over rows of products of deviations from the mean (not divided): points x points, points x responses and
-  /// responses x responses.
+  /// Sums over rows of products of deviations from the mean (not divided): points x points.
   auto temperature_products() const { return products_.topLeftCorner(temperatures_, temperatures_); }
+  /// Points x responses, of the same sums.
   auto cross_products() const { return products_.topRightCorner(temperatures_, errors()); }
+  /// Responses x responses, of the same sums.
   auto error_products() const { return products_.bottomRightCorner(errors(), errors()); }
 
   /// Channel `c` (temperatures first, then errors) does not vary: its range is empty, or its deviation is no more
@@ -145,6 +152,7 @@ class Moments {
   MatrixX<Scalar> products_;
 };
 
+/// Moments of rows keep their scalar.
 template <typename Temperatures, typename Errors>
 Moments(const Eigen::MatrixBase<Temperatures>&, const Eigen::MatrixBase<Errors>&)
     -> Moments<typename Temperatures::Scalar>;

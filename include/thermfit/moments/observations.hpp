@@ -16,8 +16,9 @@ struct Observations {
   std::string name;              ///< of the batch
   MatrixX<Scalar> temperatures;  ///< rows x points, K of rise or degC; empty when only moments were kept
   MatrixX<Scalar> errors;        ///< rows x responses, um
-  Moments<Scalar> moments;
+  Moments<Scalar> moments;       ///< of all its rows
 
+  /// Whether the rows are kept, not only their moments.
   bool has_rows() const { return moments.rows() == 0 || temperatures.rows() == moments.rows(); }
 };
 

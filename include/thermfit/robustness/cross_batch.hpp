@@ -20,8 +20,8 @@ inline constexpr bool is_fitter = std::is_invocable_r_v<LinearFit<Scalar>, const
 /// The model of one batch (or of several) and the temperature points it reads, in coefficient order.
 template <typename Scalar = double>
 struct BatchModel {
-  std::vector<Index> points;
-  LinearFit<Scalar> fit;
+  std::vector<Index> points;  ///< columns of the temperatures
+  LinearFit<Scalar> fit;      ///< on these points
 };
 
 namespace detail {
@@ -80,8 +80,8 @@ std::vector<MatrixX<Scalar>> cross_batch_S(const std::vector<BatchModel<Scalar>>
 /// What a number of points gives: models, matrices of S and their summary per error.
 template <typename Scalar = double>
 struct SweepStep {
-  Index points = 0;
-  std::vector<BatchModel<Scalar>> models;
+  Index points = 0;                            ///< of every model
+  std::vector<BatchModel<Scalar>> models;      ///< one per batch
   std::vector<MatrixX<Scalar>> S;              ///< per error: models x batches, um
   std::vector<Robustness<Scalar>> robustness;  ///< per error
 };

@@ -11,6 +11,7 @@ namespace thermfit {
 /// Every batch predicted by a model of all the others.
 template <typename Scalar = double>
 struct LeftOut {
+  /// A member of Residuals, such as `&Residuals<>::rmse`.
   using Figure = Scalar (Residuals<Scalar>::*)() const;
 
   std::vector<LinearFit<Scalar>> fits;                    ///< per batch: fitted without it

@@ -12,9 +12,10 @@ namespace thermfit {
 /// Accuracy S_mean and robustness S_std of eq. (12) and (13), um; divisor K, not K - 1.
 template <typename Scalar = double>
 struct MeanAndStd {
-  Scalar S_mean = 0;
-  Scalar S_std = 0;
+  Scalar S_mean = 0;  ///< accuracy, um
+  Scalar S_std = 0;   ///< robustness, um
 
+  /// Of some figures; zero of none.
   static MeanAndStd of(const std::vector<Scalar>& values) {
     if (values.empty()) return {};
     const auto v = Eigen::Map<const VectorX<Scalar>>(values.data(), static_cast<Index>(values.size())).array();
@@ -30,8 +31,9 @@ struct Robustness {
   std::vector<MeanAndStd<Scalar>> batches;  ///< column by column: each batch over the models
   MeanAndStd<Scalar> per_model;             ///< mean and standard deviation of the models' S_mean
   MeanAndStd<Scalar> pooled;                ///< over all pairs
-  Index worst_model = 0, worst_batch = 0;   ///< the pair with the largest S
-  Scalar worst_S = 0;
+  Index worst_model = 0;                    ///< of the pair with the largest S
+  Index worst_batch = 0;                    ///< of the pair with the largest S
+  Scalar worst_S = 0;                       ///< of that pair, um
 };
 
 /// Both readings of the paper's table 8, um. `matrix` is K x K; the diagonal, a model on its own batch, is left out

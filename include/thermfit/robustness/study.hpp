@@ -31,8 +31,8 @@ struct StudyOptions {
 /// A method and a selection rule judged across batches at every number of points.
 template <typename Scalar = double>
 struct StudiedMethod {
-  Method method;
-  Selection selection;
+  Method method;         ///< which of the four
+  Selection selection;   ///< how its points are chosen
   Index components = 0;  ///< fixed number of latent variables; 0: by the study's rule
   std::vector<std::optional<SweepStep<Scalar>>>
       sweep{};            ///< entry k - 1: k points; empty where the method has no answer
@@ -49,16 +49,16 @@ struct StudiedMethod {
 /// One row of the leave-one-batch-out table: a method on all given points.
 template <typename Scalar = double>
 struct LeftOutMethod {
-  Method method;
-  Index components = 0;  ///< of PLS and PCR
-  std::optional<LeftOut<Scalar>> result;
-  std::string refusal;
+  Method method;                          ///< which of the four
+  Index components = 0;                   ///< of PLS and PCR
+  std::optional<LeftOut<Scalar>> result;  ///< none where the method has no answer
+  std::string refusal;                    ///< why there is none
 };
 
 /// The paper's whole comparison on one campaign.
 template <typename Scalar = double>
 struct Study {
-  StudyOptions options;
+  StudyOptions options;                         ///< it was made with
   Index points = 0;                             ///< temperature points there are
   std::vector<MatrixX<Scalar>> correlations;    ///< per batch: points x errors, eq. (1)
   std::vector<StudiedMethod<Scalar>> methods;   ///< PLS and MLR on correlated points first

@@ -57,6 +57,7 @@ std::vector<RankedPoint<Scalar>> correlation_ranking(const Moments<Scalar>& mome
 struct ByCorrelation {
   Index response = -1;  ///< error it looks at; negative: all
 
+  /// The best `count` points of `batch`, or fewer where there are no more. Allocates.
   template <typename Scalar>
   std::vector<Index> operator()(const Observations<Scalar>& batch, Index count) const {
     std::vector<Index> points;

@@ -108,6 +108,7 @@ struct ByFcgr {
   Index response = -1;      ///< error it looks at; negative: all
   double coefficient = .5;  ///< distinguishing coefficient of the grey relational grade
 
+  /// The best `count` points of `batch`, or fewer where there are no more. Allocates.
   template <typename Scalar>
   std::vector<Index> operator()(const Observations<Scalar>& batch, Index count) const {
     if (!batch.has_rows()) {
