@@ -1,0 +1,216 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "thermfit/io/csv/cell.hpp"
+#include "thermfit/io/csv/layout.hpp"
+#include "thermfit/io/csv/lines.hpp"
+
+namespace thermfit::detail {
+
+/// A cell of a column that is used, without a value.
+struct MissingCell {
+  std::size_t field, column;
+};
+
+/// What a row holds, in thermfit's units; NaN where a value is missing.
+struct RowCells {
+  std::vector<double> values;  ///< temperatures, errors, inputs
+  double time_s = missing_value;
+  DateTime date_time{};
+  std::string_view batch;
+  std::vector<MissingCell> missing;
+};
+
+/// Makes cells of lines, each line by itself. Refers to the layout and the dialect, which may be filled in later.
+class RowParser {
+ public:
+  RowParser(const CsvLayout& layout, const CsvDialect& dialect, const std::string& path, Problems& problems)
+      : layout_(layout), dialect_(dialect), path_(path), problems_(problems) {}
+
+  /// To be called when layout and dialect are known: makes room, and finds out whether no row has as many fields as
+  /// there are names, which is then told of the first row only.
+  void start(const CsvEvidence& evidence, const CsvHeader& header) {
+    cells_.values.resize(layout_.roles.temperatures.size() + layout_.roles.errors.size() + layout_.roles.inputs.size());
+    all_rows_ragged_ = no_row_fits(evidence, header);
+  }
+
+  /// False, and what is wrong with it has gone to the problems, when a line cannot be used.
+  bool parse(std::string_view line, std::size_t line_number) {
+    line_number_ = line_number;
+    cells_.missing.clear();
+    cells_.batch = {};
+    cells_.time_s = missing_value;
+    return parse_plain(line) || parse_carefully(line);
+  }
+
+  /// Of the line that parse() took last; the batch is a view into the line.
+  RowCells& cells() { return cells_; }
+
+ private:
+  bool no_row_fits(const CsvEvidence& evidence, const CsvHeader& header) {
+    for (std::size_t i = header.content_lines; i < evidence.lines.size(); ++i)
+      if (split_line(evidence.lines[i].text, dialect_.separator, fields_) || fields_.size() == layout_.slots.size())
+        return false;
+    return evidence.lines.size() > header.content_lines + 1;
+  }
+
+  std::string here(std::size_t column = 0) const { return place(path_, line_number_, column); }
+  const std::string& name_of(std::size_t field) const { return layout_.columns[field].name; }
+
+  /// The fast way: plain numbers, no quotes. False when anything is out of the ordinary; then parse_carefully decides.
+  bool parse_plain(std::string_view line) {
+    const char separator = dialect_.separator, mark = dialect_.decimal_mark;
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    const std::size_t fields = layout_.slots.size();
+    for (std::size_t f = 0; f < fields; ++f) {
+      const CsvSlot& slot = layout_.slots[f];
+      const char* const begin = at;
+      double value = 0;
+      if (slot.role == CsvRole::value || slot.role == CsvRole::time) {
+        if (!parse_fixed(at, end, mark, value) || (at < end && *at != separator)) {
+          at = find_end(begin, end, separator);
+          const std::string_view text = trim({begin, static_cast<std::size_t>(at - begin)});
+          if (text.find('"') != std::string_view::npos) return false;
+          if (!take_number(text, f, static_cast<std::size_t>(text.data() - line.data()) + 1, value)) return false;
+        }
+        store(slot, value);
+      } else {
+        at = find_end(begin, end, separator);
+        const std::string_view text = trim({begin, static_cast<std::size_t>(at - begin)});
+        if (text.find('"') != std::string_view::npos) return false;
+        if (slot.role == CsvRole::empty && !text.empty()) return false;
+        if (slot.role == CsvRole::batch) cells_.batch = text;
+        if (slot.role == CsvRole::date_time &&
+            !take_date_time(text, f, static_cast<std::size_t>(begin - line.data()) + 1))
+          return false;
+      }
+      if (at == end) return f + 1 == fields;
+      ++at;
+    }
+    return false;
+  }
+
+  static const char* find_end(const char* begin, const char* end, char separator) {
+    return std::find(begin, end, separator);
+  }
+
+  /// The slow way, which tells everything that is wrong with a row. False when the row cannot be used.
+  bool parse_carefully(std::string_view line) {
+    cells_.missing.clear();
+    if (const auto broken = split_line(line, dialect_.separator, fields_)) {
+      problems_.add(problem(here(broken->column), {broken->found}, {}, {broken->remedy}));
+      return false;
+    }
+    if (fields_.size() != layout_.slots.size()) {
+      if (all_rows_ragged_) throw ragged();  // said once
+      problems_.add(ragged());
+      return false;
+    }
+    bool good = true;
+    for (std::size_t f = 0; f < fields_.size(); ++f) {
+      const CsvSlot& slot = layout_.slots[f];
+      const CsvField& field = fields_[f];
+      double value = 0;
+      switch (slot.role) {
+        case CsvRole::skip:
+          break;
+        case CsvRole::batch:
+          batch_text_ = field.name();
+          cells_.batch = batch_text_;
+          break;
+        case CsvRole::empty:
+          if (field.text.empty()) break;
+          problems_.add(problem(here(field.column), {shown(field.text), " in a column without a name"}, {},
+                                {"give the last column a name"}));
+          good = false;
+          break;
+        case CsvRole::date_time:
+          if (take_date_time(field.text, f, field.column)) break;
+          problems_.add(
+              problem(here(field.column), {name_of(f), " is ", shown(field.text)},
+                      {"an ISO 8601 date-time such as 2024-05-31T08:00:00, with a zone in all rows or in none"}));
+          good = false;
+          break;
+        case CsvRole::time:
+        case CsvRole::value:
+          if (take_number(field.text, f, field.column, value)) {
+            store(slot, value);
+            break;
+          }
+          problems_.add(bad_cell(here(field.column), name_of(f), field.text, dialect_));
+          good = false;
+      }
+    }
+    return good;
+  }
+
+  Error ragged() const {
+    const std::size_t found = fields_.size(), names = layout_.columns.size(), wanted = layout_.slots.size();
+    const char separator = dialect_.separator;
+    const std::string count = std::string(all_rows_ragged_ ? "in every row " : "") + std::to_string(found) +
+                              (found == 1 ? " field" : " fields") + " under " + std::to_string(wanted) +
+                              (wanted == 1 ? " name" : " names");
+    if (found < wanted)
+      return problem(here(),
+                     {count, ": ",
+                      (found < names ? name_of(found) : "the last, without name,") +
+                          (found + 1 < wanted ? " and what follows are" : " is"),
+                      " not there"},
+                     {"a field for each name"}, {"complete the row, or delete it"});
+    if (found == wanted + 1 && fields_.back().text.empty())
+      return problem(here(fields_.back().column), {count, ": the row ends in a ", separator_name(separator)},
+                     {"a field for each name"},
+                     {"end the first line in a ", separator_name(separator), " too, or no row"});
+    return problem(
+        here(fields_[wanted].column), {count, ": ", shown(fields_[wanted].text), " is too many"},
+        {"a field for each name"},
+        {separator == ',' ? "if the comma is the decimal mark too, save with semicolons; put text with commas in quotes"
+                          : "delete the surplus, or name the column"});
+  }
+
+  bool take_number(std::string_view text, std::size_t field, std::size_t column, double& value) {
+    if (const auto number = parse_field(text, dialect_.decimal_mark)) {
+      value = *number;
+      return true;
+    }
+    if (!is_missing(text)) return false;
+    value = missing_value;
+    cells_.missing.push_back({field, column});
+    return true;
+  }
+
+  bool take_date_time(std::string_view text, std::size_t field, std::size_t column) {
+    if (const auto parsed = parse_date_time(text)) {
+      if (zone_known_ && parsed->has_zone != has_zone_) return false;
+      zone_known_ = true;
+      has_zone_ = parsed->has_zone;
+      cells_.date_time = *parsed;
+      return true;
+    }
+    if (!is_missing(text)) return false;
+    cells_.missing.push_back({field, column});
+    return true;
+  }
+
+  void store(const CsvSlot& slot, double value) {
+    if (slot.convert) value = slot.unit.to_canonical(value);
+    (slot.role == CsvRole::time ? cells_.time_s : cells_.values[slot.index]) = value;
+  }
+
+  const CsvLayout& layout_;
+  const CsvDialect& dialect_;
+  const std::string& path_;
+  Problems& problems_;
+  RowCells cells_;
+  std::size_t line_number_ = 0;
+  std::string batch_text_;
+  std::vector<CsvField> fields_;
+  bool zone_known_ = false, has_zone_ = false, all_rows_ragged_ = false;
+};
+
+}  // namespace thermfit::detail
