@@ -5,7 +5,6 @@
 #include "report/calibration_text.hpp"
 #include "thermfit/calibration/start_tolerance.hpp"
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/io/files/atomic_file.hpp"
 #include "thermfit/io/json/machine.hpp"
 
 namespace thermfit::cli {
@@ -55,8 +54,7 @@ Exit run(const Arguments& arguments, Console& console) {
   console.progress("calibrating …");
   const Calibration calibration = calibrate(seen, network, effects, how);
   console.progress("");
-  if (const auto path = arguments.value("--output"))
-    write_atomically(*path, machine_to_json(calibration.fit.network()).dump(1) + '\n');
+  if (const auto path = arguments.value("--output")) save_machine(calibration.fit.network(), *path);
   if (arguments.has("--json"))
     console.print(calibration_json(calibration, seen));
   else

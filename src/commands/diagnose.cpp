@@ -9,7 +9,6 @@
 #include "thermfit/constants.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/effects/catalogue.hpp"
-#include "thermfit/io/files/atomic_file.hpp"
 #include "thermfit/io/json/machine.hpp"
 
 namespace thermfit::cli {
@@ -97,8 +96,7 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
   require_time(real);
   Diagnosis found = diagnose(machine, real, library, options);
   if (found.machine.empty()) found.machine = words[0];
-  if (const auto path = arguments.value("--write"))
-    write_atomically(*path, machine_to_json(found.with_effects).dump(1) + "\n");
+  if (const auto path = arguments.value("--write")) save_machine(found.with_effects, *path);
   return found;
 }
 

@@ -1,5 +1,6 @@
 #include "options/field_flags.hpp"
 
+#include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/fit/train.hpp"
 #include "thermfit/io/csv/options.hpp"
 
@@ -30,6 +31,8 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, missing, "--missing"),
       THERMFIT_FLAG(CsvOptions, max_errors, "--max-errors"),
       THERMFIT_FLAG(TrainingPlan, row_wise, "thermfit fit --row-wise"),
+      THERMFIT_FLAG(OutputsOptions, room, "--ambient"),
+      {"pair_campaigns::sim", "--sim"},  // an argument of that function
   };
   return table;
 }

@@ -86,7 +86,7 @@ void require_clock(const Batch& batch) {
   for (const Channels* channels : {&batch.temperatures, &batch.errors, &batch.inputs})
     if (const MatrixX<Scalar>& values = channels->values; !values.allFinite())
       throw Error(batch.source.empty() ? batch.name : batch.source, "missing values", "numbers only",
-                  "read it with --missing drop or --missing hold");
+                  "read it with CsvOptions::missing = drop or CsvOptions::missing = hold");
 }
 
 template <typename Scalar>
@@ -150,7 +150,8 @@ PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, std::st
   result.inputs = real[0].inputs.names;
   if (result.channels.empty())
     throw Error(sim[0].source.empty() ? "simulated batches" : sim[0].source, "no channel of the measured batches",
-                "columns with the same names on both sides", "rename them or set --temperatures and --errors");
+                "columns with the same names on both sides",
+                "rename them or set CsvOptions::temperatures and CsvOptions::errors");
   for (const std::string& name : real[0].temperatures.names)
     if (sim[0].temperatures.find(name) < 0) result.not_simulated.push_back(name);
 
@@ -164,7 +165,8 @@ PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, std::st
     result.batches.push_back(detail::pair<Scalar>(batch, *same, result, result.resampled));
   }
   if (result.batches.empty())
-    throw Error("--sim", "no simulated batch has the name of a measured one", "files with equal names on both sides",
+    throw Error("pair_campaigns::sim", "no simulated batch has the name of a measured one",
+                "files with equal names on both sides",
                 "the first measured batch is " + real[0].name + ", the first simulated " + sim[0].name);
 
   std::vector<std::string> copies, held;
@@ -185,7 +187,7 @@ PairedCampaign pair_campaigns(const Campaign& real, const Campaign& sim, std::st
   if (room.empty() && held.size() == 1) room = held[0];
   const Index column = real[0].temperatures.find(room);
   if (!room.empty() && column < 0)
-    throw Error("--ambient", "no temperature '" + room + "'", "a temperature column of the batches");
+    throw Error("OutputsOptions::room", "no temperature '" + room + "'", "a temperature column of the batches");
   result.room = room;
   for (PairedBatch& batch : result.batches) {
     const auto at = std::find(result.channels.begin(), result.channels.begin() + result.temperatures, room);

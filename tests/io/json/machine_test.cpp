@@ -1,7 +1,10 @@
 #include "thermfit/io/json/machine.hpp"
 
+#include <filesystem>
+
 #include "support/catch.hpp"
 #include "support/example_network.hpp"
+#include "support/scratch_folder.hpp"
 #include "support/shared_data.hpp"
 #include "thermfit/effects/catalogue.hpp"
 
@@ -48,6 +51,15 @@ TEST_CASE("a machine written and read again is the same to the last bit", "[netw
   CHECK(twice.sensors[1].offset_K == 0.1 + 0.2);
   CHECK(twice.initial.degC[0].second == 1.0 / 3);
   CHECK(twice.effects[0].value("scale") == 1);  // completed with the prior's mean
+}
+
+TEST_CASE("a machine saved is the machine read, and nothing is left beside it", "[network][json]") {
+  const ScratchFolder folder;
+  const ThermalNetwork network = machine_from_json(document(), "m.json", library);
+  save_machine(network, folder.path("m.json"));
+  CHECK(machine_to_json(read_machine(folder.path("m.json"), library)) == machine_to_json(network));
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path("")), {}) == 1);
+  CHECK_THROWS_AS(save_machine(network, folder.path("nowhere/m.json")), Error);
 }
 
 TEST_CASE("all rules for ambient, start and displacement survive the round trip", "[network][json]") {
