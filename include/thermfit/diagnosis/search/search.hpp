@@ -92,7 +92,7 @@ class CatalogueSearch {
     }
     add_second();
     if (!found_.several.empty() && plausibility(found_.several[0]) > plausibility(found_.single[0]))
-      for (const std::size_t position : {1, 0})
+      for (const std::size_t position : {std::size_t{1}, std::size_t{0}})
         PlaceWalk<Scalar>(context_, found_.screened, own(), found_.several, position, refit_).run(2);
     say("judging", 0.95);
     return std::move(found_);
