@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "thermfit/io/csv/reader.hpp"
-#include "thermfit/thermfit.hpp"
+#include "thermfit/study.hpp"
 
 int main(int count, char** paths) try {
   using namespace thermfit;
