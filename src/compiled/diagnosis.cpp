@@ -1,4 +1,5 @@
-// The instances of diagnosis/ itself and of its planning that thermfit::compiled holds; what lies below is compiled elsewhere.
+// The instances of diagnosis/ itself and of its planning that thermfit::compiled holds; what lies below is compiled
+// elsewhere.
 #include "thermfit/diagnosis/where/where.hpp"
 #include "thermfit/findings/findings.hpp"
 #include "thermfit/simulation.hpp"

@@ -29,12 +29,12 @@ struct ExportRequest {
 };
 
 using ControllerSource = std::string;
-ControllerSource export_c(const ExportRequest& request);         ///< C99 header with test vectors
-ControllerSource export_cpp(const ExportRequest& request);       ///< C++17 header for thermfit/controller
-ControllerSource export_st(const ExportRequest& request);        ///< IEC 61131-3 function block and its test
-ControllerSource export_linuxcnc(const ExportRequest& given);    ///< HAL component
-ControllerSource export_onnx(const ExportRequest& request);      ///< bare model as ONNX, binary
-ControllerSource export_card(const ExportRequest& request);      ///< how to enter it by hand, per control
+ControllerSource export_c(const ExportRequest& request);       ///< C99 header with test vectors
+ControllerSource export_cpp(const ExportRequest& request);     ///< C++17 header for thermfit/controller
+ControllerSource export_st(const ExportRequest& request);      ///< IEC 61131-3 function block and its test
+ControllerSource export_linuxcnc(const ExportRequest& given);  ///< HAL component
+ControllerSource export_onnx(const ExportRequest& request);    ///< bare model as ONNX, binary
+ControllerSource export_card(const ExportRequest& request);    ///< how to enter it by hand, per control
 
 std::vector<std::string> card_controls();
 /// The unit that a control counts offsets in; "um" for an unknown one.

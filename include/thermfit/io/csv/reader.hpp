@@ -137,7 +137,7 @@ inline void make_names_differ(Campaign& batches) {
 
 /// Reads batches from files (`-`: standard input), in the order given. All have the same temperature points and errors,
 /// in the order of the first. Throws Error, or Errors with everything that is wrong in all files up to
-/// options.max_errors.
+/// options.max_errors. Allocates.
 template <typename Scalar = double>
 CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions& options = {}) {
   CsvReading reading;

@@ -14,6 +14,7 @@ struct CsvTable {
 };
 
 /// Reads every column of numbers of a file, time too, in the order of the file; columns of text are left out.
+/// Throws Error as read_rows does. Allocates.
 template <typename Scalar = double>
 CsvTable read_table(const std::string& path, CsvOptions options = {}) {
   options.time_column = "none";

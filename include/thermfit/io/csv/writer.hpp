@@ -7,7 +7,7 @@
 
 namespace thermfit {
 
-/// A name as a CSV field: in quotes where it needs them.
+/// A name as a CSV field: in quotes where it needs them, quotes inside it doubled (RFC 4180). Allocates.
 inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",;\t\"") == std::string::npos && text.rfind('#', 0) != 0 && !text.empty() &&
       text.front() != ' ' && text.back() != ' ')
