@@ -19,12 +19,13 @@
 
 namespace thermfit {
 
+/// What diagnose() looks for, how hard, and by which numbers it decides.
 struct DiagnoseOptions {
   std::vector<std::string> effects;  ///< look for these only; empty: the whole library
   std::vector<std::string> without;  ///< leave these out
   std::uint32_t seed = 1;            ///< of resampling
-  SearchOptions search;
-  Thresholds thresholds;
+  SearchOptions search;              ///< how hard to look
+  Thresholds thresholds;             ///< between evidence and verdict
 };
 
 /// Fewest samples of a batch whose course in time can be compared.

@@ -13,6 +13,7 @@
 
 namespace thermfit {
 
+/// All effects of the catalogue. Allocates.
 inline EffectLibrary standard_effects() {
   EffectLibrary library;
   library.add(std::make_shared<HeatSourceEffect>())

@@ -32,6 +32,7 @@ class SensorEffect : public Effect {
   }
 
  protected:
+  /// The one number of its law.
   virtual EffectParameter parameter() const = 0;
 };
 

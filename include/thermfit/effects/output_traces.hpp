@@ -19,14 +19,16 @@ namespace thermfit {
 /// A number of a trace: a coefficient to be fitted, or what is fixed in this variant.
 struct TraceNumber {
   std::string name;  ///< with its unit, as a parameter of the effect: "lag_s"
-  std::string unit;
-  double value = 0;  ///< where it is fixed
+  std::string unit;  ///< "s"; empty for a pure number
+  double value = 0;  ///< where it is fixed, in `unit`
 };
 
 /// One effect at one place, with its shape parameter (a lag, a delay, an exponent) fixed: its regressors in each batch.
 struct OutputTrace {
-  std::string effect, location, driver;
-  Stage stage = Stage::heat;
+  std::string effect;                          ///< name in the library
+  std::string location;                        ///< empty: the thermometer in which it shows most
+  std::string driver;                          ///< empty where the effect has none
+  Stage stage = Stage::heat;                   ///< of the effect
   std::vector<Index> channels;                 ///< in which the regressors count, each with coefficients of its own
   Matrix columns;                              ///< all batches below each other
   TraceNumber strength;                        ///< name and unit of the coefficient of a single column
@@ -39,6 +41,7 @@ struct OutputTrace {
 /// `Vector(const PairedBatch&)`. It refers to the law and does not keep it: for use as an argument only.
 class TraceLaw {
  public:
+  /// Refers to `law`, of either kind.
   template <typename Law>
   TraceLaw(const Law& law) : law_(&law) {  // NOLINT(google-explicit-constructor)
     if constexpr (std::is_invocable_v<const Law&, const PairedBatch&, Index>)
@@ -48,6 +51,7 @@ class TraceLaw {
     else
       whole_ = [](const void* of, const PairedBatch& batch) -> Vector { return (*static_cast<const Law*>(of))(batch); };
   }
+  /// Its value in every sample of a batch. Allocates.
   Vector operator()(const PairedBatch& batch) const {
     if (whole_) return whole_(law_, batch);
     Vector result(batch.time_s.size());
@@ -63,8 +67,8 @@ class TraceLaw {
 
 /// An input that is not always zero.
 struct TraceInput {
-  Index column = 0;  ///< in PairedBatch::inputs
-  std::string name;
+  Index column = 0;     ///< in PairedBatch::inputs
+  std::string name;     ///< of the column
   double largest = 0;   ///< largest absolute value in the campaign
   bool on_off = false;  ///< never anything but 0 and 1
 

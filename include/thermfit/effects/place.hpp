@@ -34,13 +34,14 @@ inline std::vector<Index> nodes_at(const ThermalNetwork& network, const std::str
   return result;
 }
 
+/// The node of a place that is one. Throws Error where it is none or several.
 inline Index node_at(const ThermalNetwork& network, const std::string& location) {
   const std::vector<Index> nodes = nodes_at(network, location);
   if (nodes.size() != 1) throw Error("location", "'" + location + "'", "one node");
   return nodes.front();
 }
 
-/// The two nodes of `a-b`, whether linked or not; names may contain hyphens.
+/// The two nodes of `a-b`, whether linked or not; names may contain hyphens. Throws Error where there are no such two.
 inline std::pair<Index, Index> pair_at(const ThermalNetwork& network, const std::string& location) {
   for (std::size_t at = location.find('-'); at != std::string::npos; at = location.find('-', at + 1)) {
     const Index a = network.find_node(location.substr(0, at)), b = network.find_node(location.substr(at + 1));
@@ -49,6 +50,7 @@ inline std::pair<Index, Index> pair_at(const ThermalNetwork& network, const std:
   throw Error("location", "'" + location + "' names no two nodes", "two node names joined by '-'");
 }
 
+/// `a-b` of the names of two nodes, in this order.
 inline std::string pair_name(const ThermalNetwork& network, Index a, Index b) {
   return network.nodes[static_cast<std::size_t>(a)].name + "-" + network.nodes[static_cast<std::size_t>(b)].name;
 }
@@ -61,6 +63,7 @@ inline std::string pair_place(const ThermalNetwork& network, Index a, Index b) {
                    network.links[static_cast<std::size_t>(link)].b);
 }
 
+/// The link of `a-b`, in either order. Throws Error where there are no such nodes or no link between them.
 inline Index link_at(const ThermalNetwork& network, const std::string& location) {
   const auto [a, b] = pair_at(network, location);
   const Index link = network.find_link(a, b);
@@ -79,14 +82,17 @@ Index part_at(const Items& items, Name name, const std::string& location, const 
   throw Error("location", "there is no " + kind + " '" + location + "'", known);
 }
 
+/// The heat source of this name. Throws Error naming those there are.
 inline Index source_at(const ThermalNetwork& network, const std::string& location) {
   return part_at(network.heat_sources, &ThermalNetwork::HeatSource::name, location, "heat source");
 }
 
+/// The sensor that is read from this column. Throws Error naming those there are.
 inline Index sensor_at(const ThermalNetwork& network, const std::string& location) {
   return part_at(network.sensors, &ThermalNetwork::Sensor::column, location, "sensor");
 }
 
+/// The displacement of this output, or all of them at `displacement`. Throws Error naming those there are.
 inline std::vector<Index> displacements_at(const ThermalNetwork& network, const std::string& location) {
   if (location == "displacement" && !network.displacements.empty()) {
     std::vector<Index> all;
@@ -104,6 +110,7 @@ inline std::vector<std::string> displacement_places(const ThermalNetwork& networ
   return result;
 }
 
+/// Every node by its name, in their order.
 inline std::vector<std::string> node_places(const ThermalNetwork& network) {
   std::vector<std::string> result;
   for (const auto& node : network.nodes) result.push_back(node.name);

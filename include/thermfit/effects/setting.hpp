@@ -9,10 +9,10 @@
 
 namespace thermfit {
 
-/// Typical sizes in a network, from which the priors of effects are scaled. Geometric means of what is above zero;
-/// `fallback` where there is nothing.
 namespace detail {
 
+/// Typical size in a network, from which the priors of effects are scaled: the geometric mean of what is not zero;
+/// `fallback` where there is nothing.
 template <class Items, class Get>
 double typical(const Items& items, Get get, double fallback) {
   double sum = 0;
@@ -27,6 +27,8 @@ double typical(const Items& items, Get get, double fallback) {
 
 }  // namespace detail
 
+/// Geometric mean of the links, W/K; without any, of the conductances to ambient; 1 where there is nothing. Does not
+/// allocate.
 inline double typical_conductance_W_per_K(const ThermalNetwork& network) {
   const double ambient = detail::typical(
       network.nodes, [](const auto& node) { return node.ambient_W_per_K; }, 1);
@@ -34,6 +36,7 @@ inline double typical_conductance_W_per_K(const ThermalNetwork& network) {
       network.links, [](const auto& link) { return link.conductance_W_per_K; }, ambient);
 }
 
+/// Geometric mean of the heat sources, W; without any, what makes 10 K across a typical conductance. Does not allocate.
 inline double typical_power_W(const ThermalNetwork& network) {
   const double fallback = 10 * typical_conductance_W_per_K(network);
   return detail::typical(

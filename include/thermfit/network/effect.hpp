@@ -18,6 +18,7 @@ class OutputTraces;
 /// Where in the chain from heat to reading an effect acts.
 enum class Stage { heat, boundary, conduction, expansion, measurement, initial };
 
+/// The word of documents and reports for it.
 inline const char* word_of(Stage stage) {
   constexpr const char* words[] = {"heat", "boundary", "conduction", "expansion", "measurement", "initial"};
   return words[static_cast<int>(stage)];
@@ -30,8 +31,8 @@ struct EffectParameter {
   double mean = 0;           ///< of the prior
   double sd = 1;             ///< of the prior: of the value, or of its logarithm where `logarithmic`
   bool logarithmic = false;  ///< positive, fitted as logarithm
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
+  double lower = -std::numeric_limits<double>::infinity();  ///< the value never falls below it
+  double upper = std::numeric_limits<double>::infinity();   ///< nor rises above it
   double null = 0;             ///< the value at which the effect vanishes; ignored where `shapes`
   bool shapes = false;         ///< only shapes the effect (an exponent, a coolant temperature): no value removes it
   bool fixed = false;          ///< a scale that is chosen, not fitted
@@ -93,20 +94,24 @@ inline EffectParameter fixed_parameter(std::string name, double value) {
 
 /// What candidates() may use: the machine and what its data can show.
 struct Setting {
-  ThermalNetwork network;
+  ThermalNetwork network;                    ///< the machine as given
   std::vector<std::string> inputs;           ///< input columns that vary within the campaign
   std::vector<std::string> constant_inputs;  ///< input columns that never change
   std::vector<std::string> on_off_inputs;    ///< those of `inputs` with exactly two values, one of them 0
   std::vector<double> largest;               ///< largest absolute value of each of `inputs`
-  double shortest_batch_s = 0, longest_batch_s = 0, median_step_s = 0;
-  bool ambient_measured = false;  ///< a sensor mapped to ambient is in the data
-  bool ambient_varies = false;    ///< and it moves within at least one batch
+  double shortest_batch_s = 0;               ///< duration; 0 where no batch has a clock
+  double longest_batch_s = 0;                ///< the same
+  double median_step_s = 0;                  ///< between samples, over all batches
+  bool ambient_measured = false;             ///< a sensor mapped to ambient is in the data
+  bool ambient_varies = false;               ///< and it moves within at least one batch
 
+  /// Whether it is one of `on_off_inputs`.
   bool is_on_off(const std::string& input) const {
     for (const std::string& one : on_off_inputs)
       if (one == input) return true;
     return false;
   }
+  /// Largest absolute value of an input; 1 where it is none of `inputs`.
   double largest_of(const std::string& input) const {
     for (std::size_t i = 0; i < inputs.size(); ++i)
       if (inputs[i] == input) return largest[i];
@@ -120,7 +125,9 @@ struct Setting {
 class Effect {
  public:
   virtual ~Effect() = default;
+  /// Key in documents and reports, lower case with hyphens; the same for ever.
   virtual std::string name() const = 0;
+  /// Where in the chain it acts: what a diagnosis counts it under.
   virtual Stage stage() const = 0;
   /// Every place and driver where it can act on this machine, with parameters at their starting values.
   virtual std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const = 0;
@@ -149,16 +156,20 @@ class Effect {
 /// The effects a simulation knows by name, in a fixed order.
 class EffectLibrary {
  public:
+  /// Appends an effect; of two of one name the first is found. Returns the library.
   EffectLibrary& add(std::shared_ptr<const Effect> effect) {
     effects_.push_back(std::move(effect));
     return *this;
   }
+  /// In the order in which they were added.
   const std::vector<std::shared_ptr<const Effect>>& all() const { return effects_; }
+  /// In the same order. Allocates.
   std::vector<std::string> names() const {
     std::vector<std::string> result;
     for (const auto& effect : effects_) result.push_back(effect->name());
     return result;
   }
+  /// Null where no effect has this name; else valid as long as the library.
   const Effect* find(const std::string& name) const {
     for (const auto& effect : effects_)
       if (effect->name() == name) return effect.get();

@@ -18,11 +18,12 @@
 
 namespace thermfit {
 
-/// Residuals of the levels: as simulated, calibrated, with effect (held out where the batches allow), and the noise of
-/// each channel.
+/// Residuals of the levels, held out where the batches allow, and the noise of each channel.
 struct GapResiduals {
-  ChannelResiduals as_simulated, calibrated, with_effect;
-  Vector noise;  ///< by channel
+  ChannelResiduals as_simulated;  ///< of the machine as given
+  ChannelResiduals calibrated;    ///< its parameters moved
+  ChannelResiduals with_effect;   ///< and what is named added
+  Vector noise;                   ///< by channel, in its unit
 };
 
 /// The noise of each channel: from repeats, else from the high-frequency part of what the best account leaves; never

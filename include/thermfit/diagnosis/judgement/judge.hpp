@@ -11,12 +11,12 @@ namespace thermfit {
 
 /// The verdict with what it rests on.
 struct Judgement {
-  Verdict verdict = Verdict::unknown;
-  std::vector<FoundEffect> effects;  ///< empty for none, miscalibration and unknown
-  AccountIndex best;                 ///< the account behind `effects`; calibration alone where there are none
-  AccountIndex nearest;              ///< the best account tried, named or not
-  Support support;                   ///< of `nearest`
-  GapResiduals levels;               ///< residuals as simulated, calibrated, with what is named
+  Verdict verdict = Verdict::unknown;  ///< `effect` or `ambiguous` where something is named
+  std::vector<FoundEffect> effects;    ///< empty for none, miscalibration and unknown
+  AccountIndex best;                   ///< the account behind `effects`; calibration alone where there are none
+  AccountIndex nearest;                ///< the best account tried, named or not
+  Support support;                     ///< of `nearest`
+  GapResiduals levels;                 ///< residuals as simulated, calibrated, with what is named
 };
 
 /// `none` or `miscalibration`, where there is no effect: calibration was needed when it closes most of what is left

@@ -17,6 +17,7 @@
 
 namespace thermfit {
 
+/// What the evidence names, and what it rests on.
 struct Naming {
   std::vector<FoundEffect> effects;  ///< empty where nothing is named
   AccountIndex best;                 ///< the account behind `effects`; calibration alone where there are none

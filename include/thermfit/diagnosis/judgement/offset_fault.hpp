@@ -13,9 +13,9 @@ namespace thermfit {
 
 /// The thermometer whose offset is least like a tolerance, and the log odds of a fault against it.
 struct OffsetFault {
-  Index sensor = -1;  ///< -1: none can be judged
-  double odds = -std::numeric_limits<double>::infinity();
-  std::string effect;  ///< of the library that says it
+  Index sensor = -1;                                       ///< -1: none can be judged
+  double odds = -std::numeric_limits<double>::infinity();  ///< log odds of a fault against a tolerance
+  std::string effect;                                      ///< of the library that says it
 };
 
 /// From the offset that the data alone ask for, m with variance v in units of the tolerance: log N(m; 0, v + 1 + r^2) /

@@ -11,6 +11,7 @@
 
 namespace thermfit {
 
+/// How far held-out batches bear out what the evidence names.
 enum class Proof {
   given,      ///< or not asked for
   suspicion,  ///< too few batches to prove anything

@@ -18,6 +18,7 @@ struct BatchSquares {
   Vector sum;    ///< by batch
   Vector count;  ///< values by batch
 
+  /// Over all batches, in the unit of the residual; 0 without values. Does not allocate.
   template <typename Scalar = double>
   double rms() const {
     const VectorX<Scalar>&squares = sum, &counts = count;

@@ -15,8 +15,8 @@ namespace thermfit {
 /// Regressors of one channel that stand for calibration, all batches below each other, with the standard deviation of
 /// each coefficient.
 struct CalibrationBasis {
-  Matrix regressors;
-  Vector prior_sd;
+  Matrix regressors;            ///< samples x coefficients
+  Vector prior_sd;              ///< of each coefficient around 0
   std::vector<Index> borrowed;  ///< columns that hold measured temperatures, which the simulator alone would not have
   double explained = 0;         ///< share of the simulated course that its recorded drives explain, 0…1
 };

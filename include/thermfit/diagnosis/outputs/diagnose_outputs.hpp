@@ -20,6 +20,7 @@
 
 namespace thermfit {
 
+/// What diagnose_outputs() looks for and by which numbers it decides.
 struct OutputsOptions {
   std::string room;                  ///< ambient temperature column; empty: recognised
   double reference_degC = 20;        ///< of gain and nonlinear expansion
@@ -27,9 +28,9 @@ struct OutputsOptions {
   std::vector<std::string> without;  ///< not these
   unsigned seed = 1;                 ///< of resampling
   unsigned threads = 0;              ///< 0: all cores
-  OutputThresholds thresholds;
-  Thresholds shared;  ///< of which rivals listed and folds that prove are the same as with a network
-  std::function<void(const std::string&)> progress;
+  OutputThresholds thresholds;       ///< between outputs and verdict
+  Thresholds shared;                 ///< of which rivals listed and folds that prove are the same as with a network
+  std::function<void(const std::string&)> progress;  ///< told each step before it begins; empty: nobody is told
 };
 
 namespace detail {

@@ -7,16 +7,16 @@ namespace thermfit {
 /// The numbers between the outputs of a simulator and a verdict on them. Set on the withheld cases and generated
 /// campaigns (tests/blind); gaps are rms, in units of the noise of a single sample where `_noises`.
 struct OutputThresholds {
-  double decisive_nats = 60;  ///< evidence over calibration that a named effect must have …
-  double further = 2;         ///< … and a further one, times this: a first leaves the mismatch of its trace
-  int most_effects = 3;
-  double least_softness_nats = 3;        ///< differences of evidence below this decide nothing, …
-  double softness_share = .03;           ///< … nor below this share of it: traces are approximations
-  double most_certain = .99;             ///< no probability is told above it
-  double none_below_noises = 1.7;        ///< as simulated: no gap
-  double closed_below_noises = 2;        ///< calibrated: closed by calibration …
-  double nearly_closed_noises = 4;       ///< … or below this, if calibration
-  double calibration_left = .4;          ///< leaves no more than this share
+  double decisive_nats = 60;        ///< evidence over calibration that a named effect must have …
+  double further = 2;               ///< … and a further one, times this: a first leaves the mismatch of its trace
+  int most_effects = 3;             ///< named at most
+  double least_softness_nats = 3;   ///< differences of evidence below this decide nothing, …
+  double softness_share = .03;      ///< … nor below this share of it: traces are approximations
+  double most_certain = .99;        ///< no probability is told above it
+  double none_below_noises = 1.7;   ///< as simulated: no gap
+  double closed_below_noises = 2;   ///< calibrated: closed by calibration …
+  double nearly_closed_noises = 4;  ///< … or below this, if calibration
+  double calibration_left = .4;     ///< leaves no more than this share
   double least_contribution_noises = 3;  ///< of a trace in its only channel
   double left_per_channel = 15;          ///< squared noises beyond one, a channel: too much is left …
   double left_share = .3;                ///< … if it is more than this share of what calibration leaves
@@ -27,6 +27,7 @@ struct OutputThresholds {
   double loosest = .5;                   ///< calibration is as loose as the median channel needs, but no looser
 };
 
+/// All of them, in the order of the fields. Allocates.
 inline NamedNumbers named_numbers(const OutputThresholds& of) {
   return {{"decisive_nats", of.decisive_nats},
           {"further", of.further},

@@ -57,10 +57,12 @@ VectorX<Scalar> held_out_residual(const PairedCampaign& campaign, const MatrixX<
 /// Evidence of regressors with their prior, nats: the level of the noise is profiled between what calibration leaves
 /// and the white part, and `correlation` samples count as one.
 struct Evidence {
-  double log = 0;
+  double log = 0;    ///< at the best level, nats
   double noise = 0;  ///< weight of a sample at the best level
 };
 
+/// Evidence of regressors of a channel whose cross_products() with its gap are `products`, with `prior_sd` of their
+/// coefficients. Allocates.
 template <typename Scalar = double>
 Evidence profiled_evidence(const PairedChannel& channel, const MatrixX<Scalar>& products,
                            const VectorX<Scalar>& prior_sd) {

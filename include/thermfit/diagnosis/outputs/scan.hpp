@@ -16,18 +16,19 @@ namespace thermfit {
 
 /// A trace's worth in one channel.
 struct ChannelScore {
-  Index channel = 0;
-  double gain = 0;      ///< evidence over calibration alone, nats
-  Vector coefficients;  ///< of the trace's columns
-  Vector standard_errors;
-  double contribution = 0;  ///< rms of the fitted trace
+  Index channel = 0;        ///< in PairedCampaign::channels
+  double gain = 0;          ///< evidence over calibration alone, nats
+  Vector coefficients;      ///< of the trace's columns
+  Vector standard_errors;   ///< of `coefficients`
+  double contribution = 0;  ///< rms of the fitted trace, in the unit of the channel
   double direction = 0;     ///< its correlation with the second column (a heat flow, lagged), -1…1
 };
 
+/// A trace's worth in all channels where it counts.
 struct TraceScore {
-  std::size_t trace = 0;
-  double gain = 0;  ///< summed over its channels, nats
-  std::vector<ChannelScore> channels;
+  std::size_t trace = 0;                  ///< its place in OutputScan::traces
+  double gain = 0;                        ///< summed over its channels, nats
+  std::vector<ChannelScore> channels;     ///< in the order of OutputTrace::channels
   std::optional<RuledOutBy> implausible;  ///< why it cannot be its effect; empty where it can
 };
 
@@ -35,8 +36,11 @@ struct TraceScore {
 /// channel shows; a law of unit strength has 1 +- 10 %.
 template <typename Scalar = double>
 struct TracePrior {
-  VectorX<Scalar> mean, sd, scale;
+  VectorX<Scalar> mean;   ///< of the coefficients of the scaled columns
+  VectorX<Scalar> sd;     ///< of the same
+  VectorX<Scalar> scale;  ///< rms of each column, never 0
 
+  /// In one channel. Allocates.
   TracePrior(const OutputTrace& trace, const PairedChannel& channel) {
     const MatrixX<Scalar>& regressors = trace.columns;
     const Index columns = regressors.cols();
@@ -49,6 +53,7 @@ struct TracePrior {
   }
 };
 
+/// Fits a trace beside the calibration of channel `index`, which is `channel`. Allocates.
 template <typename Scalar = double>
 ChannelScore score_in(const OutputTrace& trace, const PairedChannel& channel, Index index) {
   const TracePrior<Scalar> prior(trace, channel);
@@ -105,8 +110,10 @@ inline bool same_node(const PairedCampaign& campaign, Index a, Index b) {
   return true;
 }
 
-/// A law of unit strength may come out this far off it, since its trace is an approximation.
-constexpr double least_strength = .75, most_strength = 1.33;
+/// A law of unit strength may come out this far below it, since its trace is an approximation …
+constexpr double least_strength = .75;
+/// … and this far above it.
+constexpr double most_strength = 1.33;
 /// Share of what the strongest thermometer shows that a heat flow must show where it acts.
 constexpr double shows_here = .4;
 
@@ -137,6 +144,8 @@ inline std::optional<RuledOutBy> why_implausible(const OutputTrace& trace, const
   return std::nullopt;
 }
 
+/// Weighs trace number `index` of a scan in every channel where it counts, and asks whether it can be its effect.
+/// `channels` are those of `campaign`. Allocates.
 template <typename Scalar = double>
 TraceScore score_of(std::size_t index, const OutputTrace& trace, const std::vector<PairedChannel>& channels,
                     const PairedCampaign& campaign) {

@@ -14,18 +14,21 @@ namespace thermfit {
 
 /// The traces of all effects and what each is worth, strongest first.
 struct OutputScan {
-  std::vector<OutputTrace> traces;
-  std::vector<TraceScore> scores;
+  std::vector<OutputTrace> traces;  ///< in the order of the library
+  std::vector<TraceScore> scores;   ///< largest gain first
 
+  /// The trace that was scored.
   const OutputTrace& trace_of(const TraceScore& score) const { return traces[score.trace]; }
 };
 
 /// The best variant of an effect at a place.
 struct Suspect {
   const TraceScore* score = nullptr;  ///< of the scan
-  std::string effect, location, driver;
-  double gain = 0;         ///< nats, in the channels that are asked for
-  double probability = 0;  ///< beside the other suspects and none
+  std::string effect;                 ///< name in the library
+  std::string location;               ///< where the trace lies, location_of()
+  std::string driver;                 ///< empty where the effect has none
+  double gain = 0;                    ///< nats, in the channels that are asked for
+  double probability = 0;             ///< beside the other suspects and none
 };
 
 /// Where a trace lies: its own location, else the thermometer in which it shows most.

@@ -21,8 +21,8 @@ namespace thermfit {
 
 /// An explanation as a fitted machine.
 struct FittedRival {
-  Rival rival;
-  ThermalNetwork network;
+  Rival rival;             ///< which explanation
+  ThermalNetwork network;  ///< calibrated, with its effects at fitted values
 };
 
 /// Probability of taking one explanation for the other that a plan is to reach.

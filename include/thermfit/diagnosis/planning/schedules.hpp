@@ -15,8 +15,8 @@ namespace thermfit {
 
 /// A piece of machine time with what would drive the machine in it.
 struct Schedule {
-  PlannedBlock block;  ///< hours of one run
-  Excitation excitation;
+  PlannedBlock block;     ///< hours of one run
+  Excitation excitation;  ///< of the same run
 };
 
 namespace detail {

@@ -13,9 +13,9 @@ namespace thermfit {
 /// One account of a campaign: the machine calibrated together with some effects (none: calibration only).
 struct Account {
   std::vector<ThermalNetwork::AddedEffect> effects;  ///< with fitted values
-  MapFit fit;
-  HeldOut held;
-  int steps = 0;  ///< between its place and one that the catalogue lists
+  MapFit fit;                                        ///< to all batches
+  HeldOut held;                                      ///< what it leaves on batches that were left out
+  int steps = 0;                                     ///< between its place and one that the catalogue lists
 };
 
 /// Evidence counts by this power: lumping errors repeat from batch to batch, so its nats are not worth what they would
@@ -41,17 +41,18 @@ inline void best_first(std::vector<Account>& accounts) {
                    [](const Account& a, const Account& b) { return plausibility(a) > plausibility(b); });
 }
 
+/// Whether two effects are the same but for the values of their parameters. Does not allocate.
 inline bool same_place(const ThermalNetwork::AddedEffect& a, const ThermalNetwork::AddedEffect& b) {
   return a.effect == b.effect && a.location == b.location && a.driver == b.driver;
 }
 
 /// What stays the same while accounts of one campaign are compared.
 struct SearchContext {
-  const MachineRecord& seen;
+  const MachineRecord& seen;      ///< what the campaign says
   const ThermalNetwork& machine;  ///< as given, with placements
-  const EffectLibrary& library;
-  const Folds& folds;
-  unsigned threads = 0;  ///< 0: all cores
+  const EffectLibrary& library;   ///< knows every effect of the accounts
+  const Folds& folds;             ///< batches that are left out together
+  unsigned threads = 0;           ///< 0: all cores
 };
 
 /// `how` begun where `fit` ended: its noise, the width of its priors, and its first `count` coordinates.

@@ -27,13 +27,13 @@ class ScreeningBase {
     bare_simulated_ = simulate(bare_, seen.excitations, library);
   }
 
-  const MachineRecord& seen() const { return seen_; }
-  const MapFit& fit() const { return fit_; }
-  const std::vector<Simulation>& simulated() const { return simulated_; }  ///< with sensitivities
-  const ThermalNetwork& bare() const { return bare_; }                     ///< on which signatures are taken
-  const std::vector<Simulation>& bare_simulated() const { return bare_simulated_; }
-  const std::vector<std::vector<Whitener>>& whiteners() const { return whiteners_; }
-  const Linearized& model() const { return model_; }
+  const MachineRecord& seen() const { return seen_; }                                 ///< what the campaign says
+  const MapFit& fit() const { return fit_; }                                          ///< of the calibrated machine
+  const std::vector<Simulation>& simulated() const { return simulated_; }             ///< with sensitivities
+  const ThermalNetwork& bare() const { return bare_; }                                ///< on which signatures are taken
+  const std::vector<Simulation>& bare_simulated() const { return bare_simulated_; }   ///< bare(), by batch
+  const std::vector<std::vector<Whitener>>& whiteners() const { return whiteners_; }  ///< by channel and batch
+  const Linearized& model() const { return model_; }  ///< the calibrated machine, whitened
 
   /// Information of the machine's parameters with channels reweighted, and its factor; the factor at unit weights is
   /// kept.

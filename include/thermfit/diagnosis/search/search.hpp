@@ -17,36 +17,38 @@ namespace thermfit {
 
 /// How hard to look.
 struct SearchOptions {
-  std::size_t strongest = 7;  ///< candidates that get the full refit, before one of each family is added
-  std::size_t restarted = 4;  ///< of them get a second start where the best leaves much
-  int most_steps = 3;         ///< from place to place around the best
-  std::size_t most_effects = 2;
-  unsigned threads = 0;    ///< 0: all cores
+  std::size_t strongest = 7;     ///< candidates that get the full refit, before one of each family is added
+  std::size_t restarted = 4;     ///< of them get a second start where the best leaves much
+  int most_steps = 3;            ///< from place to place around the best
+  std::size_t most_effects = 2;  ///< in one account
+  unsigned threads = 0;          ///< 0: all cores
   double second_from = 4;  ///< misfit of a channel, (rms / expected)^2, beyond which a second effect is sought at once
   double tolerance = 1.5;  ///< nats at which a refit of a candidate stops
-  int most_iterations = 18;
-  std::function<void(const std::string& step, double share)> progress;
+  int most_iterations = 18;                                             ///< of a refit of a candidate
+  std::function<void(const std::string& step, double share)> progress;  ///< told each step; `share` of all is done, 0…1
 };
 
 /// Which account of a SearchResult.
 struct AccountIndex {
+  /// The members of a SearchResult of these names.
   enum class List { calibrated, single, several };
-  List list = List::calibrated;
-  std::size_t index = 0;
+  List list = List::calibrated;  ///< in which it is
+  std::size_t index = 0;         ///< in the list; of no meaning for `calibrated`, which is one account
 };
 
 /// Everything a verdict is built from: the accounts of a campaign, tried and judged on held-out batches.
 struct SearchResult {
-  MachineRecord seen;
-  ThermalNetwork machine;  ///< as given, with placements
-  Folds folds;
+  MachineRecord seen;         ///< what the campaign says
+  ThermalNetwork machine;     ///< as given, with placements
+  Folds folds;                ///< batches left out together; empty: too few to leave any out
   ChannelResiduals as_given;  ///< of the machine as given, sensors where it says they are
   MapFit placed;              ///< only the sensors moved: what the machine as given leaves once they sit where they sit
-  Account calibrated;
+  Account calibrated;         ///< without effects
   std::vector<Candidate> screened;  ///< all candidates, strongest first
   std::vector<Account> single;      ///< refitted candidates, most plausible first
   std::vector<Account> several;     ///< with two and more effects, most plausible first
 
+  /// The account; `which` must be one that there is.
   const Account& at(AccountIndex which) const {
     return which.list == AccountIndex::List::calibrated ? calibrated
            : which.list == AccountIndex::List::single   ? single[which.index]

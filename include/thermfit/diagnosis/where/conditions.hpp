@@ -87,7 +87,12 @@ void add_factor(const std::string& name, const Campaign& batches, const std::vec
 /// Slopes below this share of the steepest count as steady.
 constexpr double steady_share = .15;
 
-enum class ThermalPhase { warm_up, steady, cool_down };
+/// What the mean temperature of a machine does.
+enum class ThermalPhase {
+  warm_up,   ///< rises
+  steady,    ///< hardly changes
+  cool_down  ///< falls
+};
 
 /// The phase of every sample by the slope of the mean temperature over about a twentieth of the batch; slopes below 15
 /// % of the steepest count as steady. Without temperatures or time everything is steady.

@@ -17,10 +17,10 @@ namespace thermfit {
 
 /// A place with a disturbance of unknown course.
 struct DisturbedPlace {
-  std::string name;
-  Stage stage = Stage::heat;
-  double gain = 0;         ///< log likelihood the disturbance adds alone, nats
-  double gain_beside = 0;  ///< what it still adds beside the places picked before it
+  std::string name;           ///< a node, a sensor, `displacement`, `ambient`, `start` or `clock`
+  Stage stage = Stage::heat;  ///< at which it disturbs
+  double gain = 0;            ///< log likelihood the disturbance adds alone, nats
+  double gain_beside = 0;     ///< what it still adds beside the places picked before it
 };
 
 namespace detail {
