@@ -68,7 +68,7 @@ TEST_CASE("what does not pair is told: names, channels, clocks, missing values, 
   CHECK(message_of({timeless}, {real}).find("no time column") != std::string::npos);
   Batch broken = real;
   broken.temperatures.values(3, 0) = std::nan("");
-  CHECK(message_of({broken}, {real}).find("--missing") != std::string::npos);
+  CHECK(message_of({broken}, {real}).find("CsvOptions::missing") != std::string::npos);
   CHECK(message_of({real}, {batch_of("K01", coarse.array() + 1e5, .01)}).find("in common") != std::string::npos);
   CHECK(message_of({real}, {real}, "T99").find("no temperature 'T99'") != std::string::npos);
 }

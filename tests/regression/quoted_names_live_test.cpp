@@ -33,8 +33,8 @@ TrainedModel model_of(const std::vector<std::string>& temperatures, const std::v
 
 TEST_CASE("names in quotes, doubled quotes and separators inside quotes are one column each") {
   const std::string line = R"(time_s,"bed, left [degF]","the ""cold"" end","a;b;c",T4)";
-  for (const std::string& before : {"", "\xEF\xBB\xBF"})
-    for (const std::string& end : {"", "\r"}) {
+  for (const char* before : {"", "\xEF\xBB\xBF"})
+    for (const char* end : {"", "\r"}) {
       const CsvLineReader reader(before + line + end, 1, "standard input");
       std::vector<std::string> names = names_of(reader);
       CHECK(names.front() == "time_s");

@@ -37,7 +37,10 @@ SearchResult lagging(const std::vector<double>& left_K, double nats) {
   for (std::size_t b = 0; b < left_K.size(); ++b) {
     found.seen.names.push_back("K" + std::to_string(b));
     found.seen.time_s.push_back(Vector::LinSpaced(20, 0, 1900));
-    found.seen.excitations.emplace_back();
+    Excitation own;  // no two batches repeat each other
+    own.time_s = found.seen.time_s[b];
+    own.inputs = Matrix::Constant(20, 1, static_cast<double>(b));
+    found.seen.excitations.push_back(own);
     found.folds.push_back({b});
     channel.measured.push_back(Vector::LinSpaced(20, 20, 30));
     before.push_back(Vector::Constant(20, 4));

@@ -1,6 +1,5 @@
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 
-#include "report/diagnosis_text.hpp"
 #include "support/catch.hpp"
 #include "support/small_machine.hpp"
 #include "support/withheld.hpp"
@@ -105,7 +104,6 @@ TEST_CASE("an effect of one's own is found in the outputs, told by its meaning, 
   CHECK(found.effects[0].effect == "open-door");
   CHECK(found.effects[0].location == "ambient");
   CHECK(found.effects[0].meaning == "cold air comes in");
-  CHECK(cli::diagnosis_text(found).find("t ambient cold air comes in (open-door driven by time") != std::string::npos);
   CHECK(diagnose_outputs(real, nominal, standard_effects()).verdict != Verdict::effect);
 
   FoundEffect doubtful = found.effects[0];
