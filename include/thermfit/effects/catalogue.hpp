@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "thermfit/compiled.hpp"
 #include "thermfit/effects/boundary.hpp"
 #include "thermfit/effects/conduction.hpp"
 #include "thermfit/effects/expansion.hpp"
@@ -14,7 +15,8 @@
 namespace thermfit {
 
 /// All effects of the catalogue. Allocates.
-inline EffectLibrary standard_effects() {
+template <typename Scalar = double>
+EffectLibrary standard_effects() {
   EffectLibrary library;
   library.add(std::make_shared<HeatSourceEffect>())
       .add(std::make_shared<FrictionLaw>())
@@ -39,5 +41,7 @@ inline EffectLibrary standard_effects() {
       .add(std::make_shared<ClockOffset>());
   return library;
 }
+
+THERMFIT_COMPILED_TEMPLATE(EffectLibrary standard_effects<double>());
 
 }  // namespace thermfit

@@ -71,6 +71,8 @@ std::vector<LinearModel<Scalar>> pcr_path(const Moments<Scalar>& moments, const 
   return detail::latent_path(moments, options, detail::ExtractPcr{});
 }
 
+THERMFIT_COMPILED_TEMPLATE(std::vector<LinearModel<double>> pcr_path<double>(const Moments<double>&,
+                                                                             const FitOptions&));
 THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit_pcr<double>(const Moments<double>&, const FitOptions&));
 THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit_pcr<double>(const std::vector<Moments<double>>&, const FitOptions&));
 namespace detail {

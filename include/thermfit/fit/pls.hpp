@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "thermfit/fit/impl/latent_path.hpp"
+#include "thermfit/fit/impl/singular_values.hpp"
 
 namespace thermfit {
 
@@ -53,12 +54,8 @@ struct PlsOnRows {
 /// Unit weights of the next latent variable: the leading left singular vector of `covariance` (points x responses).
 template <typename Scalar>
 VectorX<Scalar> pls_weights(const MatrixX<Scalar>& covariance) {
-  VectorX<Scalar> weights;
-  if (covariance.cols() == 1) {
-    weights = covariance.col(0).normalized();
-  } else {
-    weights = Eigen::JacobiSVD<MatrixX<Scalar>>(covariance, Eigen::ComputeThinU | Eigen::ComputeThinV).matrixU().col(0);
-  }
+  VectorX<Scalar> weights = covariance.cols() == 1 ? VectorX<Scalar>(covariance.col(0).normalized())
+                                                   : VectorX<Scalar>(SingularValues<Scalar>(covariance).u.col(0));
   weights *= sign_of_largest(weights);
   return weights;
 }
@@ -170,6 +167,8 @@ std::vector<LinearModel<Scalar>> pls_path(const Moments<Scalar>& moments, const 
 
 THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit_pls<double>(const Moments<double>&, const FitOptions&));
 THERMFIT_COMPILED_TEMPLATE(LinearFit<double> fit_pls<double>(const std::vector<Moments<double>>&, const FitOptions&));
+THERMFIT_COMPILED_TEMPLATE(std::vector<LinearModel<double>> pls_path<double>(const Moments<double>&,
+                                                                             const FitOptions&));
 namespace detail {
 THERMFIT_COMPILED_TEMPLATE(LinearFit<double> pls_of_rows<double>(const MatrixView<double>&, const MatrixView<double>&,
                                                                  const FitOptions&));

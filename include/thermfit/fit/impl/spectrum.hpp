@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "thermfit/fit/impl/singular_values.hpp"
 #include "thermfit/fit/impl/standardised.hpp"
 #include "thermfit/fit/linear_fit.hpp"
 
@@ -70,14 +70,13 @@ Spectrum<Scalar> spectrum(const StandardisedMoments<Scalar>& moments) {
 /// By singular values of the rows; resolves condition numbers up to about 1e13 in double.
 template <typename Scalar>
 Spectrum<Scalar> spectrum(const StandardisedRows<Scalar>& rows) {
-  const Eigen::JacobiSVD<MatrixX<Scalar>> svd(rows.x, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const SingularValues<Scalar> svd(rows.x);
   Spectrum<Scalar> result;
-  const VectorX<Scalar> decreasing = svd.singularValues();
-  const Index rank = above(decreasing, rank_tolerance<Scalar>(rows.x.cols()));
-  const VectorX<Scalar> singular = decreasing.head(rank);
+  const Index rank = above(svd.values, rank_tolerance<Scalar>(rows.x.cols()));
+  const VectorX<Scalar> singular = svd.values.head(rank);
   result.variance = singular.cwiseAbs2();
-  result.directions = svd.matrixV().leftCols(rank);
-  result.slopes = singular.cwiseInverse().asDiagonal() * (svd.matrixU().leftCols(rank).transpose() * rows.y);
+  result.directions = svd.v.leftCols(rank);
+  result.slopes = singular.cwiseInverse().asDiagonal() * (svd.u.leftCols(rank).transpose() * rows.y);
   return result;
 }
 
