@@ -30,6 +30,8 @@ inline Error problem(const std::string& place, Parts found, Parts allowed = {}, 
 /// wrong alike with several files as a whole, such as a column that none of them has, is one line.
 class Errors : public Error {
  public:
+  /// Keeps the problems and joins them and `last_line` to what(). Throws std::out_of_range without a problem.
+  /// Allocates.
   explicit Errors(std::vector<Error> problems, std::string last_line = {})
       : Error(problems.at(0)), problems_(std::move(problems)) {
     std::vector<bool> told(problems_.size(), false);
@@ -49,7 +51,9 @@ class Errors : public Error {
     if (!last_line.empty()) text_ += '\n' + last_line;
   }
 
+  /// A line for each problem, one for those that are alike, then the last line. Does not allocate.
   const char* what() const noexcept override { return text_.c_str(); }
+  /// All of them, also those that are alike, in the order of the constructor; never empty. Does not allocate.
   const std::vector<Error>& problems() const noexcept { return problems_; }
 
  private:
@@ -70,6 +74,7 @@ class Errors : public Error {
 /// Collects problems, so that a user mends a file once and not once per mistake.
 class Problems {
  public:
+  /// The `most`th problem is the last: it is thrown with those before it; 0 counts as 1. Does not allocate.
   explicit Problems(std::size_t most) : most_(most == 0 ? 1 : most) {}
 
   /// Keeps one more; throws all of them when the limit is reached.
@@ -88,6 +93,7 @@ class Problems {
     throw Errors(std::move(all_));
   }
 
+  /// How many it has collected so far. Does not allocate.
   std::size_t count() const { return all_.size(); }
 
  private:

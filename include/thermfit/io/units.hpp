@@ -10,15 +10,20 @@
 
 namespace thermfit {
 
+/// What a unit measures, told by thermfit in s, degC or um.
 enum class Quantity { time, temperature, length };
 
 /// A unit as a way to thermfit's own: `canonical = (value - zero) * numerator / denominator` in s, degC or um.
 /// Two factors, so that 212 degF is 100 degC and 0.1 h is 360 s to the last digit.
 struct Unit {
-  Quantity quantity;
-  double zero, numerator, denominator;
+  Quantity quantity;  ///< what it measures
+  double zero,        ///< value in this unit that is 0 in thermfit's own
+      numerator,      ///< of the factor from this unit to thermfit's own
+      denominator;    ///< of the same; never 0
 
+  /// A value in this unit, in s, degC or um. Does not allocate.
   double to_canonical(double value) const { return (value - zero) * numerator / denominator; }
+  /// Whether it is thermfit's own, so that values stay as they are. Does not allocate.
   bool is_canonical() const { return zero == 0 && numerator == denominator; }
 };
 

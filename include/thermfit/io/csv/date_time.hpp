@@ -10,7 +10,7 @@ namespace thermfit {
 struct DateTime {
   std::int64_t seconds;  ///< since 1970-01-01T00:00:00, zone applied
   double fraction;       ///< of a second, [0, 1)
-  bool has_zone;
+  bool has_zone;         ///< a zone was written: Z or an offset
 };
 
 namespace detail {

@@ -15,10 +15,14 @@ namespace thermfit {
 
 /// How a file spells its table, as found or as told.
 struct CsvDialect {
-  char separator = ',';
-  char decimal_mark = '.';
-  bool bom = false, crlf = false, compressed = false, unit_row = false;
+  char separator = ',';     ///< `,` `;` tab or `|`
+  char decimal_mark = '.';  ///< `.` or `,`
+  bool bom = false,         ///< a byte order mark comes first
+      crlf = false,         ///< the first line ends in CR LF
+      compressed = false,   ///< it is gzip
+      unit_row = false;     ///< the line below the names holds their units
 
+  /// Whether commas separate, points are decimal marks and there is no unit row. Does not allocate.
   bool is_plain() const { return separator == ',' && decimal_mark == '.' && !unit_row; }
 
   /// "semicolon-separated, decimal comma, unit row".

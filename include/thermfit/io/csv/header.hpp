@@ -20,6 +20,7 @@ struct CsvColumn {
   std::string unit;          ///< as written in brackets behind the name or in the unit row; empty when not told
   std::size_t position = 0;  ///< of the title in its line, from 1
 
+  /// Whether `text` is its name or its title, spelled exactly. Does not allocate.
   bool is_called(const std::string& text) const { return text == name || text == title; }
 };
 

@@ -13,12 +13,14 @@ namespace thermfit {
 
 /// What the columns of a file mean: names by role, in the order of the file or of the options that chose them.
 struct CsvRoles {
-  std::string time;   ///< empty when there is none
-  std::string batch;  ///< empty when the file is one batch
-  std::vector<std::string> temperatures, errors, inputs;
-  std::vector<std::string> ignored;    ///< text, empty, or not asked for
-  std::vector<std::string> converted;  ///< "T1 from degF"
-  bool assumed_minutes = false;        ///< nobody said what the clock counts
+  std::string time;                       ///< empty when there is none
+  std::string batch;                      ///< empty when the file is one batch
+  std::vector<std::string> temperatures,  ///< temperature points, whose values are read in degC
+      errors,                             ///< thermal errors, whose values are read in um
+      inputs;                             ///< other columns of numbers, whose values are left as written
+  std::vector<std::string> ignored;       ///< text, empty, or not asked for
+  std::vector<std::string> converted;     ///< "T1 from degF"
+  bool assumed_minutes = false;           ///< nobody said what the clock counts
 };
 
 namespace detail {

@@ -28,6 +28,7 @@ class CsvLineReader {
     columns_ = detail::columns_in(line, line_number_, separator_, name_);
   }
 
+  /// The columns in the order of the line of names; find() and value() count them from 0. Does not allocate.
   const std::vector<CsvColumn>& columns() const { return columns_; }
 
   /// The column called `wanted`, or nothing. Throws Error when there are two, or when it has a unit that is none of

@@ -14,13 +14,13 @@ namespace thermfit {
 struct BatchMoments {
   std::string name;   ///< value of the batch column; empty without one
   Vector first_degC;  ///< temperatures of its first row
-  Moments<> moments;
+  Moments<> moments;  ///< of all its rows: temperatures in degC or, as rises, in K; errors in um
 };
 
 /// The batches of one file as moments, in order of appearance, and what was met while reading.
 struct CsvMoments {
-  CsvFile file;
-  std::vector<BatchMoments> batches;
+  CsvFile file;                       ///< what was met
+  std::vector<BatchMoments> batches;  ///< in order of appearance
 };
 
 /// Reads a file of any size in constant memory: 256 rows a batch at a time become moments. With

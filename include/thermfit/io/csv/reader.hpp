@@ -14,8 +14,8 @@ namespace thermfit {
 
 /// Batches and what was met on the way to them.
 struct CsvReading {
-  Campaign batches;
-  std::vector<CsvFile> files;
+  Campaign batches;            ///< of all files in the order given, those of one file in order of appearance
+  std::vector<CsvFile> files;  ///< what was met in each, in the order given
 
   /// Remarks a user should hear: a dialect that is not the plain one, conversions, missing values, columns left out.
   /// The same remark about several files is made once.

@@ -15,23 +15,26 @@ namespace thermfit {
 
 /// One row of a file, in thermfit's units. The views hold until the next row is asked for.
 struct CsvRow {
+  /// The values of one role, a view; NaN where one is missing and MissingValues::keep is asked for.
   using Values = Eigen::Map<const Eigen::RowVectorXd>;
   std::size_t line;        ///< in the file, from 1
   std::string_view batch;  ///< value of the batch column; empty without one
   double time_s;           ///< NaN without a clock
-  Values temperatures, errors, inputs;
-  Index held_values = 0;  ///< values that were missing and are the last ones of their channel
+  Values temperatures,     ///< degC
+      errors,              ///< um
+      inputs;              ///< as written
+  Index held_values = 0;   ///< values that were missing and are the last ones of their channel
 };
 
 /// What was met while reading one file.
 struct CsvFile {
-  std::string path;  ///< `stdin` for standard input
-  CsvDialect dialect;
-  CsvRoles roles;
-  std::size_t rows = 0;     ///< rows handed out
-  std::size_t missing = 0;  ///< cells without a value, in columns that are used
-  std::size_t dropped_rows = 0;
-  std::string first_missing;  ///< `file:line:column (T3)`
+  std::string path;              ///< `stdin` for standard input
+  CsvDialect dialect;            ///< as found or as told
+  CsvRoles roles;                ///< of its columns
+  std::size_t rows = 0;          ///< rows handed out
+  std::size_t missing = 0;       ///< cells without a value, in columns that are used
+  std::size_t dropped_rows = 0;  ///< rows left out for a missing value: MissingValues::drop or error
+  std::string first_missing;     ///< `file:line:column (T3)`
 };
 
 /// Reads a file row by row in constant memory. Problems of rows go to `problems`; such rows are left out.
@@ -57,6 +60,8 @@ class CsvRowReader {
     for (std::size_t taken = 0; taken < header.content_lines && lines_.next(line);) taken += detail::is_content(line);
   }
 
+  /// What was met so far: dialect and roles from the start, counts up to the row that next() gave last. Does not
+  /// allocate.
   const CsvFile& file() const { return file_; }
 
   /// Rows of a batch (by its value in the batch column) left out so far for missing values.

@@ -9,8 +9,8 @@ namespace thermfit {
 
 /// A file of numbers as it stands: no roles, no units.
 struct CsvTable {
-  std::vector<std::string> names;
-  Matrix values;  ///< rows x names.size()
+  std::vector<std::string> names;  ///< of the columns of numbers, in the order of the file
+  Matrix values;                   ///< rows x names.size()
 };
 
 /// Reads every column of numbers of a file, time too, in the order of the file; columns of text are left out.

@@ -38,7 +38,7 @@ class ByteSource {
   ~ByteSource() { close(); }
 
   const std::string& name() const { return name_; }  ///< path, or `stdin`
-  bool compressed() const { return compressed_; }
+  bool compressed() const { return compressed_; }    ///< whether it is gzip, which read() inflates
 
   /// Up to `capacity` bytes; 0 only at the end. Throws Error on a failed read or broken compressed data.
   std::size_t read(char* to, std::size_t capacity) {

@@ -14,6 +14,7 @@ namespace thermfit {
 /// SHA-256 (FIPS 180-4) fed in pieces: `update` as often as needed, then `hex` once. Does not allocate until `hex`.
 class Sha256 {
  public:
+  /// Feeds `bytes` behind those fed before. Does not allocate.
   void update(std::string_view bytes) {
     length_ += bytes.size();
     while (!bytes.empty()) {

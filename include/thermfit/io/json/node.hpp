@@ -30,11 +30,15 @@ using Json = nlohmann::ordered_json;
 template <typename J>
 class BasicJsonNode {
  public:
+  /// `value` at the key path `path` of the document that errors call `file`; the whole document has an empty path.
   BasicJsonNode(const J& value, std::string file, std::string path = {})
       : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
 
+  /// The value itself, unchecked. Does not allocate.
   const J& json() const { return *value_; }
+  /// "file: key.path[3].name", as Error::place() has it; the file alone for the whole document. Allocates.
   std::string place() const { return path_.empty() ? file_ : file_ + ": " + path_; }
+  /// Throws Error at place() with these parts; never returns.
   [[noreturn]] void fail(const std::string& found, const std::string& allowed = {},
                          const std::string& remedy = {}) const {
     throw Error(place(), found, allowed, remedy);
@@ -51,13 +55,16 @@ class BasicJsonNode {
     }
     return *this;
   }
+  /// Whether this is an object that has the key. Does not allocate.
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
+  /// The value of a key of an object. Throws Error when this is no object or the key is missing. Allocates.
   BasicJsonNode at(const std::string& key) const {
     require(value_->is_object(), "an object");
     const auto it = value_->find(key);
     if (it == value_->end()) fail("key '" + key + "' is missing");
     return {*it, file_, path_.empty() ? key : path_ + '.' + key};
   }
+  /// The value of a key; nothing when it is missing or this is no object. Allocates.
   std::optional<BasicJsonNode> find(const std::string& key) const {
     return has(key) ? std::optional<BasicJsonNode>(at(key)) : std::nullopt;
   }
@@ -69,8 +76,10 @@ class BasicJsonNode {
       fail("a list of " + std::to_string(value_->size()) + " entries", "at most " + std::to_string(most));
     return value_->size();
   }
+  /// Item `i` of an array, from 0. Not checked: this must be an array, and `i` below size(). Allocates.
   BasicJsonNode item(std::size_t i) const { return {(*value_)[i], file_, path_ + '[' + std::to_string(i) + ']'}; }
 
+  /// A finite number from `lowest` to `highest`, both included. Allocates.
   double number(double lowest = -std::numeric_limits<double>::max(),
                 double highest = std::numeric_limits<double>::max()) const {
     require(value_->is_number(), range("a number", lowest, highest));
@@ -84,6 +93,7 @@ class BasicJsonNode {
     if (!(value > 0)) fail("value " + exact_text(value), "a number above 0");
     return value;
   }
+  /// A whole number from `lowest` to `highest`, both included, written without decimals and exponent. Allocates.
   Index integer(Index lowest, Index highest) const {
     const std::string allowed = "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
     require(value_->is_number_integer(), allowed);
@@ -92,6 +102,7 @@ class BasicJsonNode {
     if (above_signed || value < lowest || value > highest) fail("value " + value_->dump(), allowed);
     return value;
   }
+  /// `true` or `false`, for which no number stands. Does not allocate.
   bool boolean() const {
     require(value_->is_boolean(), "true or false");
     return value_->template get<bool>();
@@ -106,12 +117,14 @@ class BasicJsonNode {
       if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) fail("a control character in a text", "printable text");
     return value;
   }
+  /// A text that is one of `allowed`, spelled exactly. Allocates.
   std::string choice(const std::vector<std::string>& allowed) const {
     const std::string value = text();
     for (const std::string& word : allowed)
       if (word == value) return value;
     fail("'" + value + "'", name_list(allowed), "change it" + did_you_mean(value, allowed));
   }
+  /// A list of at most `most` texts, each as text() takes it. Allocates.
   std::vector<std::string> texts(std::size_t most = 10000) const {
     std::vector<std::string> values;
     for (std::size_t i = 0, n = size(most); i < n; ++i) values.push_back(item(i).text());
@@ -167,6 +180,7 @@ class BasicJsonNode {
   std::string file_, path_;
 };
 
+/// A value in a Json document.
 using JsonNode = BasicJsonNode<Json>;
 
 /// Parses JSON text; `file` names it in errors. Syntax errors become Error("file:line:column", …); a key given twice,
@@ -219,6 +233,7 @@ template <typename J = Json>
 J to_json(const Vector& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
+/// A matrix as a list of its rows, each a list of numbers. Allocates.
 template <typename J = Json>
 J to_json(const Matrix& values) {
   J rows = J::array();
