@@ -36,7 +36,8 @@ struct Marginal {
 
 /// Sums the probabilities of accounts by effect (and driver), strongest first. One effect named `besides` is left out
 /// of each account: what an account of two says about the other one.
-inline std::vector<Marginal> marginals(const std::vector<Account>& accounts, const std::vector<double>& weight,
+template <typename Scalar = double>
+std::vector<Marginal> marginals(const std::vector<Account>& accounts, const std::vector<double>& weight,
                                        const std::string& besides, double listed) {
   struct Entry {
     std::string effect, driver;

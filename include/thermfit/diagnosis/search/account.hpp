@@ -36,7 +36,8 @@ inline double price_of_search(std::size_t candidates) {
 }
 
 /// Most plausible first; ties stay in order.
-inline void best_first(std::vector<Account>& accounts) {
+template <typename Scalar = double>
+void best_first(std::vector<Account>& accounts) {
   std::stable_sort(accounts.begin(), accounts.end(),
                    [](const Account& a, const Account& b) { return plausibility(a) > plausibility(b); });
 }

@@ -18,7 +18,8 @@ struct GridPoint {
 
 /// The times of a batch whose displacements were logged `delay_s` late: the sample at t shows the machine at
 /// t - delay_s, before the first sample the machine at its start. Times closer than a microsecond are one.
-inline std::vector<GridPoint> time_grid(const Vector& time_s, double delay_s) {
+template <typename Scalar = double>
+std::vector<GridPoint> time_grid(const Vector& time_s, double delay_s) {
   const Index samples = time_s.size();
   std::vector<GridPoint> grid(static_cast<std::size_t>(samples));
   for (Index k = 0; k < samples; ++k) {
