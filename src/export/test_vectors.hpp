@@ -19,7 +19,7 @@ using HostCompensator = Compensator<Scalar, dynamic_size, dynamic_size, dynamic_
 /// The same readings `repeat` times, after a command; then the offset and status that must have come out.
 template <class Scalar>
 struct TestVector {
-  enum Command : std::uint32_t { none, start, stop };
+  enum Command : std::uint32_t { none, start, stop, datum };
   std::uint32_t repeat;
   Command command;
   std::vector<Scalar> readings_degC;
@@ -46,6 +46,7 @@ class TestCourse {
     readings_ = cold;
     add(1, TestVector<Scalar>::none);
     add(2, TestVector<Scalar>::start);
+    add(settings_.zero.samples + 2, TestVector<Scalar>::datum);
     move_to(warm, 24);
     add(40);
     for (std::size_t i = 0; i < readings_.size(); ++i) lose(i, gone_);
@@ -98,6 +99,7 @@ class TestCourse {
     if (repeat == 0) return;
     if (command == Vector::start) device_.start();
     if (command == Vector::stop) device_.stop();
+    if (command == Vector::datum) device_.take_datum();
     for (std::uint32_t n = 0; n < repeat; ++n) device_.step(readings_);
     vectors_.push_back({repeat, command, readings_, device_.offset_um(), device_.status().word});
   }

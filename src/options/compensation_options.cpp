@@ -6,6 +6,12 @@ std::vector<Option> compensation_options() {
   return {
       {"--period", "S", "seconds from one step to the next; default 1", 0, false},
       {"--sign", "SIGN", "what the offset is: correction (default, minus the predicted error) or error", 0, false},
+      {"--zero", "WHEN",
+       "what corrections are relative to without a datum or a retained zero: wait (default, offset 0 "
+       "and state no datum until there is one) or first (the first samples: only for machines always started cold)",
+       0, false},
+      {"--through-zero", "", "with --zero first: no intercept, offset 0 at the zero; after a datum always", 0, false},
+      {"--stale-after", "S", "the same heartbeat for so long makes readings stale; default 5", 0, false},
       {"--clamp", "UM", "the offset stays within +-UM; default: |mean| + 4 deviations of the training errors", 0,
        false},
       {"--slew", "UM_PER_S", "the offset moves at most so fast; default 1", 0, false},
@@ -27,6 +33,9 @@ CompensationWishes compensation_wishes(const Arguments& arguments) {
   wishes.lost_after_s = arguments.number("--lost-after", 0, 1e6).value_or(wishes.lost_after_s);
   wishes.recover_after_s = arguments.number("--recover-after", 0, 1e6).value_or(wishes.recover_after_s);
   wishes.range_margin_K = arguments.number("--range-margin", 0, 1000).value_or(wishes.range_margin_K);
+  wishes.zero = arguments.choice("--zero", {"wait", "first"}, "wait") == "first" ? ZeroPolicy::first : ZeroPolicy::wait;
+  wishes.through_zero = arguments.has("--through-zero");
+  wishes.stale_s = arguments.number("--stale-after", 1e-6, 1e6).value_or(wishes.stale_s);
   if (arguments.choice("--sign", {"correction", "error"}, "correction") == "error") wishes.sign = OutputSign::error;
   const std::string policy = arguments.choice("--domain", {"ignore", "warn", "shrink", "hold"}, "warn");
   wishes.domain_policy = policy == "ignore"   ? DomainPolicy::ignore

@@ -34,13 +34,14 @@ inline thermfit::TrainedModel example_model() {
   m.domain.t2_limit_95 = 6, m.domain.t2_limit_99 = 9.5;
   m.domain.spe_limit_95 = 4, m.domain.spe_limit_99 = 6.5;
   for (Index lost = 0; lost < 2; ++lost) {  // none for the third
-    SubstituteModel substitute{lost, m.model, Eigen::Vector2d(.6, 1.8)};
+    SubstituteModel substitute{lost, m.model, Eigen::Vector2d(.6, 1.8), Eigen::Vector2d(2, 8)};
     substitute.model.coefficients.row(lost).setZero();
     substitute.model.coefficients.row(1 - lost) *= 1.75;
     m.substitutes.push_back(substitute);
   }
   m.envelope = {Eigen::Vector3d(18, 18, 18), Eigen::Vector3d(40, 35, 30), Eigen::Vector3d(2, 1, .5),
-                Eigen::Vector3d(1, 2, 4)};
+                Eigen::Vector3d(1, 2, 4),    Eigen::Vector3d(18, 18, 18), Eigen::Vector3d(22, 22, 22),
+                Eigen::Vector3d(.1, .1, .1)};
   m.batches = {{"made", 79, std::string(64, '0')}};
   m.tool_version = "0";
   return m;

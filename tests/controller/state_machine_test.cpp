@@ -21,9 +21,11 @@ State expected(State state, Event event) {
     case Event::substitute_demand:
       return State::substituting;
     case Event::hold_expired:
-      return State::fallback;
+      return state == State::no_datum ? state : State::fallback;
+    case Event::no_zero:
+      return State::no_datum;
     case Event::no_demand:
-      return state == State::starting || state == State::fallback ? state : State::holding;
+      return state == State::starting || state == State::fallback || state == State::no_datum ? state : State::holding;
     default:
       return state;
   }
@@ -45,7 +47,7 @@ TEST_CASE("only the two following states move the offset to the demand, only wai
   using thermfit::OffsetTarget;
   const OffsetTarget expected_targets[] = {OffsetTarget::zero,   OffsetTarget::rest, OffsetTarget::demand,
                                            OffsetTarget::demand, OffsetTarget::rest, OffsetTarget::zero,
-                                           OffsetTarget::zero};
+                                           OffsetTarget::zero,   OffsetTarget::zero};
   for (int s = 0; s < thermfit::compensator_states; ++s)
     CHECK(offset_target(static_cast<State>(s)) == expected_targets[s]);
 }

@@ -80,16 +80,23 @@ class Hash {
 };
 
 /// Runs `steps` of a compensator with any interface: `subject` has start(), start(offsets), start(offsets, zero),
-/// stop() and step(readings); after each step `look(state of the random walk)` is called.
+/// stop(), datum() and step(readings, periods, heartbeat); after each step `look()` is called.
 template <class Scalar, std::size_t Sensors, std::size_t Errors, class Subject, class Look>
 void run(Subject& subject, std::uint32_t steps, Look look) {
   Random random(2463534242u);
   std::array<Sensor<Scalar>, Sensors> sensors{};
   std::array<Scalar, Sensors> readings{}, zero{};
   std::array<Scalar, Errors> offsets{};
+  std::uint32_t heartbeat = 0;
+  bool beating = false;
   subject.start();
   for (std::uint32_t n = 0; n < steps; ++n) {
     const std::uint32_t command = random.below(5000);
+    if (command >= 10 && command < 13) subject.datum();
+    if (command == 13) beating = !beating;
+    if (beating) ++heartbeat;
+    const std::uint32_t lateness = random.below(1000);
+    const std::uint32_t periods = lateness < 990 ? 1 : lateness < 995 ? 0 : random.below(20);
     if (command < 4) subject.stop();
     if (command == 4 || command == 5) subject.start();
     if (command >= 6 && command < 10) {
@@ -100,7 +107,7 @@ void run(Subject& subject, std::uint32_t steps, Look look) {
       if (command != 7) subject.start(offsets);
     }
     for (std::size_t i = 0; i < Sensors; ++i) readings[i] = sensors[i].read(random);
-    subject.step(readings);
+    subject.step(readings, periods, heartbeat);
     look();
   }
 }

@@ -8,10 +8,12 @@ walk_float::Compensator device(walk_float::model, walk_float::settings);
 }
 
 extern "C" bool controller_start() { return device.start(); }
-extern "C" bool controller_start_at(const walk_float::Compensator::Offsets& offsets,
-                                    const walk_float::Compensator::Temperatures& zero) {
-  return device.start(offsets, zero);
+extern "C" bool controller_resume(const walk_float::Compensator::Offsets& offsets,
+                                  const walk_float::Compensator::Retained& retained) {
+  return device.resume(retained, offsets);
 }
+extern "C" void controller_retain(walk_float::Compensator::Retained& retained) { retained = device.retained(); }
+extern "C" void controller_datum() { device.take_datum(); }
 extern "C" void controller_stop() { device.stop(); }
 extern "C" std::uint32_t controller_step(const walk_float::Compensator::Temperatures& readings) {
   return device.step(readings).word;

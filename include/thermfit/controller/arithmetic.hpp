@@ -7,6 +7,7 @@
 #error "thermfit: the controller needs comparisons that NaN fails; build it without -ffast-math / -ffinite-math-only"
 #endif
 
+#include <cstdint>
 #include <limits>
 
 namespace thermfit {
@@ -27,6 +28,12 @@ constexpr bool is_finite(Scalar value) noexcept {
 template <class Scalar>
 constexpr Scalar magnitude(Scalar value) noexcept {
   return value < 0 ? -value : value;
+}
+
+/// `count` and `more`; stays at the largest number there is instead of beginning again.
+constexpr std::uint32_t counted(std::uint32_t count, std::uint32_t more) noexcept {
+  const std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
+  return count < most - more ? count + more : most;
 }
 
 }  // namespace thermfit

@@ -2,16 +2,25 @@
 
 #include "thermfit/controller/compensator_settings.hpp"
 #include "thermfit/controller/controller_model.hpp"
-#include "thermfit/controller/rise_reference.hpp"
 #include "thermfit/controller/state_machine.hpp"
 
 namespace thermfit {
+
+/// What a caller knows about one call of Compensator::step().
+struct CompensatorCall {
+  std::uint32_t periods = 1;    ///< since the call before; 0: none has passed, and nothing moves
+  std::uint32_t heartbeat = 0;  ///< changes whenever the readings are new; 0 from the start: there is none
+};
 
 /// Temperatures in, offset and status out, once per controller cycle, whatever the sensors do.
 ///
 /// For any input at all the offset is finite, within ± clamp, and moves at most by the slew limit a step.
 /// state_machine.hpp is the behaviour, status.hpp the status word. With fixed sizes nothing allocates and nothing
 /// throws; model and settings are referred to and must outlive the compensator.
+///
+/// Corrections are relative to a zero: the thermal state when the work offset was probed (datum.hpp). It is retained
+/// over a power cycle, or given by a datum; without one the compensator does nothing and says so, unless the settings
+/// let it take its first samples.
 ///
 /// A caller runs `start()` once and `step()` with the newest readings (degC, absolute, in the model's order) at a
 /// fixed period; a reading that did not arrive is handed over as NaN.
@@ -23,25 +32,29 @@ class Compensator {
   using Settings = CompensatorSettings<Scalar, Sensors, Errors>;       ///< how it behaves
   using Temperatures = Row<Scalar, Sensors>;                           ///< one reading a sensor, degC
   using Offsets = Row<Scalar, Errors>;                                 ///< one offset an error, um
+  using Retained = RetainedDatum<Scalar, Sensors>;                     ///< a zero to keep over a power cycle
 
   /// Off, offset 0. Faulty settings show in status() and are never started.
   Compensator(const Model& model, const Settings& settings) noexcept : model_(model), settings_(settings) {
     detail::set_size(offset_um_, model.errors());
     detail::set_size(demand_um_, model.errors());
     detail::set_size(values_, model.sensors());
+    datum_.reset(model.sensors());
     reset();
     if (!settings_fit()) status_.word = CompensatorStatus::bad_settings_bit;
   }
   Compensator(const Model&&, const Settings&) = delete;
   Compensator(const Model&, const Settings&&) = delete;
 
-  /// Starts from the present offset (0 after power-on). The zero of the temperature rise is the first usable sample.
-  /// Returns false, and stays off, when the settings are faulty.
+  /// Starts from the present offset (0 after power-on), relative to the zero it knows. Without one, and unless the
+  /// settings let it take one, it stays at 0 and says no_datum. Returns false, and stays off, when the settings are
+  /// faulty.
   bool start() noexcept {
     if (!settings_fit()) return false;
     reset();
+    if (model_.rise && !datum_.known() && settings_.zero.policy == ZeroPolicy::first) datum_.request(ZeroSource::first);
     raise(CompensatorEvent::start);
-    status_.word = static_cast<std::uint32_t>(state_);
+    tell();
     return true;
   }
 
@@ -53,11 +66,24 @@ class Compensator {
     return true;
   }
 
-  /// The same on a machine that is still warm, with the zero of the temperature rise kept from before.
-  bool start(const Offsets& offset_um, const Temperatures& zero_degC) noexcept {
-    if (!start(offset_um)) return false;
-    if (model_.rise) reference_.restore(zero_degC);
-    return true;
+  /// Starts relative to the zero of before a power cycle; as without one when `retained` is none, torn or another
+  /// model's: status().zero_source() tells.
+  bool resume(const Retained& retained) noexcept {
+    datum_.restore(retained, model_.identity);
+    return start();
+  }
+
+  /// The same where another source already applies `offset_um`.
+  bool resume(const Retained& retained, const Offsets& offset_um) noexcept {
+    datum_.restore(retained, model_.identity);
+    return start(offset_um);
+  }
+
+  /// The operator probes the work offset now: the zero becomes the median of the samples that follow, once they agree,
+  /// and the offset 0 there; the intercept drops out. Until then the old zero counts. While off it forgets the zero.
+  void take_datum() noexcept {
+    if (state_ == CompensatorState::off) return datum_.forget();
+    datum_.request(ZeroSource::datum);
   }
 
   /// Ramps to zero and switches off.
@@ -66,24 +92,24 @@ class Compensator {
     status_.word = (status_.word & ~std::uint32_t(15)) | static_cast<std::uint32_t>(state_);
   }
 
-  /// One cycle.
-  CompensatorStatus step(const Temperatures& temperatures_degC) noexcept {
-    status_.word = 0;
+  /// One cycle: `call.periods` periods after the one before.
+  CompensatorStatus step(const Temperatures& temperatures_degC, const CompensatorCall& call = {}) noexcept {
     if (state_ == CompensatorState::off) {
-      if (!settings_fit()) status_.word = CompensatorStatus::bad_settings_bit;
+      status_.word = settings_fit() ? 0 : CompensatorStatus::bad_settings_bit;
       return status_;
     }
-    guard_.check(temperatures_degC, settings_.sensors, settings_.patience);
+    if (call.periods == 0) return status_;
+    status_.word = 0;
+    guard_.check(temperatures_degC, settings_.sensors, settings_.patience, call.periods, heartbeat_stopped(call));
+    trust_who_agrees();
+    datum_.collect(guard_, settings_.sensors, settings_.zero, model_.has_substitute, call.periods,
+                   settings_.hold_steps);
     CompensatorEvent event = judge();
-    if (event == CompensatorEvent::no_demand) {
-      if (held_steps_ >= settings_.hold_steps) event = CompensatorEvent::hold_expired;
-      if (held_steps_ < settings_.hold_steps) ++held_steps_;
-    } else {
-      held_steps_ = 0;
-    }
+    held_steps_ = event == CompensatorEvent::no_demand ? counted(held_steps_, call.periods) : 0;
+    if (held_steps_ > settings_.hold_steps) event = CompensatorEvent::hold_expired;
     raise(event);
-    if (move_offset()) raise(CompensatorEvent::at_zero);
-    status_.word |= static_cast<std::uint32_t>(state_);
+    if (move_offset(call.periods)) raise(CompensatorEvent::at_zero);
+    tell();
     return status_;
   }
 
@@ -94,39 +120,117 @@ class Compensator {
   /// What it is doing now.
   CompensatorState state() const noexcept { return state_; }
 
-  /// The zero of the temperature rise, to be kept over a power cycle; 0 where there is none.
-  const Temperatures& zero_degC() const noexcept { return reference_.zero_degC(); }
+  /// The zero, to be stored over a power cycle whenever it changes; says none where there is none. Only dynamic rows
+  /// allocate.
+  Retained retained() const { return datum_.retained(model_.identity); }
 
  private:
   bool settings_fit() const noexcept { return broken_rule(settings_) == nullptr; }
 
   void reset() noexcept {
     guard_.reset(model_.sensors());
-    reference_.reset(model_.sensors(), model_.rise);
     domain_.reset(model_.domain);
-    held_steps_ = 0;
+    held_steps_ = silent_steps_ = 0;
+    has_heartbeat_ = false;
   }
 
   void raise(CompensatorEvent event) noexcept { state_ = next_state(state_, event); }
 
+  /// What every status word ends with.
+  void tell() noexcept {
+    status_.word = (status_.word & ~std::uint32_t(15)) | static_cast<std::uint32_t>(state_) |
+                   static_cast<std::uint32_t>(datum_.source()) << 28 |
+                   (datum_.pending() ? CompensatorStatus::zero_pending_bit : 0);
+  }
+
+  bool heartbeat_stopped(const CompensatorCall& call) noexcept {
+    if (!has_heartbeat_ || call.heartbeat != heartbeat_) {
+      silent_steps_ = 0;
+    } else {
+      silent_steps_ = counted(silent_steps_, call.periods);
+    }
+    has_heartbeat_ = has_heartbeat_ || call.heartbeat != 0;
+    heartbeat_ = call.heartbeat;
+    return silent_steps_ >= settings_.stale_steps;
+  }
+
+  /// Whether the demand is relative to a zero: of models on temperature rise always, of others after a datum.
+  bool relative() const noexcept { return model_.rise || datum_.known(); }
+  bool has_reference(std::size_t sensor) const noexcept { return !relative() || datum_.known(sensor); }
+
+  /// The readings as the equation takes them: relative to the zero, or absolute.
+  void take_values() noexcept {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      values_[i] = guard_.reading_degC(i) - (relative() ? datum_.zero_degC()[i] : Scalar(0));
+  }
+  /// The readings as the training domain takes them: relative only where the model is.
+  void take_domain_values() noexcept {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      values_[i] = guard_.reading_degC(i) - (model_.rise ? datum_.zero_degC()[i] : Scalar(0));
+  }
+
+  Scalar predicted(const typename Model::Equation& equation, std::size_t error) const noexcept {
+    return relative() && (datum_.through_zero() || !model_.rise) ? equation.change(error, values_)
+                                                                 : equation.predict(error, values_);
+  }
+
+  /// Lost sensors that read well again are trusted where they agree with the others.
+  void trust_who_agrees() noexcept {
+    std::uint32_t away = 0;
+    bool all_read = true;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      away += guard_.fault(i) == SensorFault::none ? 0 : 1;
+      all_read = all_read && (guard_.fault(i) == SensorFault::none || guard_.returning(i));
+    }
+    if (away == 0) return;
+    const bool together = all_read && agree_together();
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      if (!guard_.returning(i)) continue;
+      const bool compared = away == 1 && has_reference(i) && model_.has_substitute[i] && model_.agreement_um[i][0] > 0;
+      if (compared ? agrees_with_substitute(i) : together || near_where_it_was(i)) guard_.trust(i);
+    }
+  }
+
+  bool agrees_with_substitute(std::size_t sensor) noexcept {
+    take_values();
+    for (std::size_t j = 0; j < demand_um_.size(); ++j) {
+      const Scalar difference = predicted(model_.equation, j) - predicted(model_.substitutes[sensor], j);
+      if (!(magnitude(difference) <= model_.agreement_um[sensor][j])) return false;
+    }
+    return true;
+  }
+
+  /// Several that come back at once agree when the sample as a whole is like those of training.
+  bool agree_together() noexcept {
+    if (settings_.domain_policy == DomainPolicy::ignore) return false;
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (!has_reference(i) || (model_.rise && !datum_.known())) return false;
+    take_domain_values();
+    return domain_.share_inside(model_.domain, values_) >= 1;
+  }
+
+  /// What nothing can vouch for comes back where it was; freely where nothing rests on it yet.
+  bool near_where_it_was(std::size_t sensor) const noexcept {
+    if (!guard_.trusted_before(sensor) || (model_.rise && !datum_.known())) return true;
+    return magnitude(guard_.reading_degC(sensor) - guard_.trusted_degC(sensor)) <= settings_.patience.others_moved_K;
+  }
+
   /// Which sensors can be used, and the demand that follows from them.
   CompensatorEvent judge() noexcept {
-    std::uint32_t unused = count_unused();
-    if (!reference_.captured()) {
-      if (!usable(unused)) return CompensatorEvent::no_demand;
-      reference_.capture(guard_);
-      unused = count_unused();
-    }
+    const std::uint32_t unused = count_unused();
+    if (model_.rise && !datum_.known())
+      return datum_.pending() && state_ != CompensatorState::no_datum ? CompensatorEvent::no_demand
+                                                                      : CompensatorEvent::no_zero;
     if (!usable(unused)) return CompensatorEvent::no_demand;
-    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = guard_.reading_degC(i) - reference_.zero_degC()[i];
     const bool whole = unused == 0;
+    take_values();
     const auto& equation = whole ? model_.equation : model_.substitutes[first_unused_];
     for (std::size_t j = 0; j < demand_um_.size(); ++j) {
-      demand_um_[j] = equation.predict(j, values_);
+      demand_um_[j] = predicted(equation, j);
       if (!is_finite(demand_um_[j])) return CompensatorEvent::no_demand;
     }
-    if (!whole) return CompensatorEvent::substitute_demand;
-    return apply_domain() ? CompensatorEvent::demand : CompensatorEvent::no_demand;
+    if (!apply_domain(whole)) return CompensatorEvent::no_demand;
+    return whole ? CompensatorEvent::demand : CompensatorEvent::substitute_demand;
   }
 
   /// Counts the sensors that cannot be used and tells of the first in the status.
@@ -135,8 +239,7 @@ class Compensator {
     SensorFault first_fault = SensorFault::none;
     for (std::size_t i = 0; i < values_.size(); ++i) {
       SensorFault fault = guard_.fault(i);
-      if (fault == SensorFault::none && reference_.captured() && !reference_.known(i))
-        fault = SensorFault::no_reference;
+      if (fault == SensorFault::none && datum_.known() && !has_reference(i)) fault = SensorFault::no_reference;
       if (fault == SensorFault::none) continue;
       if (unused++ > 0) continue;
       first_unused_ = i;
@@ -151,23 +254,34 @@ class Compensator {
   bool usable(std::uint32_t unused) const noexcept {
     if (unused == 0) return true;
     if (unused > 1 || !model_.has_substitute[first_unused_]) return false;
-    return guard_.lost(first_unused_) || (reference_.captured() && !reference_.known(first_unused_));
+    return guard_.lost(first_unused_) || !has_reference(first_unused_);
   }
 
-  /// Treats a sample outside the domain as the settings say; false when it must not be followed.
-  bool apply_domain() noexcept {
+  /// Treats a sample outside the domain as the settings say, a missing sensor at what the others let expect; false when
+  /// it must not be followed.
+  bool apply_domain(bool whole) noexcept {
     if (settings_.domain_policy == DomainPolicy::ignore) return true;
+    take_domain_values();
+    if (!whole) domain_.fill_in(model_.domain, values_, first_unused_);
     const Scalar share = domain_.share_inside(model_.domain, values_);
     if (share >= 1) return true;
     status_.word |= CompensatorStatus::outside_domain_bit;
     if (settings_.domain_policy == DomainPolicy::shrink)
-      for (std::size_t j = 0; j < demand_um_.size(); ++j)
-        demand_um_[j] = model_.centre_um[j] + share * (demand_um_[j] - model_.centre_um[j]);
+      for (std::size_t j = 0; j < demand_um_.size(); ++j) {
+        const Scalar centre = model_.centre_um[j] - left_out(j);
+        demand_um_[j] = centre + share * (demand_um_[j] - centre);
+      }
     return settings_.domain_policy != DomainPolicy::hold;
   }
 
-  /// Moves every offset one step towards where the state wants it; true when all of them are zero.
-  bool move_offset() noexcept {
+  /// What drops out of the prediction where the offset is 0 at the zero.
+  Scalar left_out(std::size_t error) const noexcept {
+    if (!model_.rise) return datum_.known() ? model_.equation.predict(error, datum_.zero_degC()) : Scalar(0);
+    return datum_.through_zero() ? model_.equation.intercept_um[error] : Scalar(0);
+  }
+
+  /// Moves every offset towards where the state wants it; true when all of them are zero.
+  bool move_offset(std::uint32_t periods) noexcept {
     const OffsetTarget kind = offset_target(state_);
     bool at_zero = true;
     for (std::size_t j = 0; j < offset_um_.size(); ++j) {
@@ -178,7 +292,7 @@ class Compensator {
         target = clamped(wanted, limits.clamp_um);
         if (!(target == wanted)) status_.word |= CompensatorStatus::clamped_bit;
       }
-      offset_um_[j] = slewed(offset_um_[j], target, limits.slew_um_per_step);
+      offset_um_[j] = slewed(offset_um_[j], target, limits.slew_um_per_step * static_cast<Scalar>(periods));
       if (!(offset_um_[j] == target)) status_.word |= CompensatorStatus::slewing_bit;
       at_zero = at_zero && offset_um_[j] == 0;
     }
@@ -188,13 +302,14 @@ class Compensator {
   const Model& model_;
   const Settings& settings_;
   SensorGuard<Scalar, Sensors> guard_;
-  RiseReference<Scalar, Sensors> reference_;
+  Datum<Scalar, Sensors> datum_;
   DomainGuard<Scalar, Sensors, Components> domain_;
   Temperatures values_{};
   Offsets demand_um_{}, offset_um_{};
   CompensatorStatus status_;
   std::size_t first_unused_ = 0;
-  std::uint32_t held_steps_ = 0;
+  std::uint32_t held_steps_ = 0, silent_steps_ = 0, heartbeat_ = 0;
+  bool has_heartbeat_ = false;
   CompensatorState state_ = CompensatorState::off;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "thermfit/controller/datum.hpp"
 #include "thermfit/controller/domain_guard.hpp"
-#include "thermfit/controller/sensor_guard.hpp"
 #include "thermfit/controller/slew_limit.hpp"
 
 namespace thermfit {
@@ -22,6 +22,8 @@ struct CompensatorSettings {
   DomainPolicy domain_policy = DomainPolicy::warn;  ///< what to do with a sample unlike those of training
   Row<OutputLimits<Scalar>, Errors> outputs{};      ///< clamp and slew of each axis
   OutputSign sign = OutputSign::correction;         ///< what the offset means to the control
+  ZeroRule zero{};                                  ///< where the zero comes from
+  std::uint32_t stale_steps = 5;  ///< steps without a new heartbeat after which readings are stale; >= 1
 };
 
 /// Text of the first rule that `settings` break, or nullptr. A compensator refuses to start with broken settings.
@@ -34,6 +36,9 @@ constexpr const char* broken_rule(const CompensatorSettings<Scalar, Sensors, Err
     if (!(sensor.lowest_degC < sensor.highest_degC)) return "sensors: lowest_degC is below highest_degC";
     if (!(sensor.largest_step_K > 0 && sensor.largest_step_K <= most))
       return "sensors: largest_step_K is above 0 and at most 1e6";
+    if (!(sensor.first_lowest_degC < sensor.first_highest_degC))
+      return "sensors: first_lowest_degC is below first_highest_degC";
+    if (!(sensor.agree_K > 0 && sensor.agree_K <= most)) return "sensors: agree_K is above 0 and at most 1e6";
   }
   const GuardPatience<Scalar>& patience = settings.patience;
   if (patience.lost_after_steps < 1 || patience.recover_after_steps < 1)
@@ -44,10 +49,15 @@ constexpr const char* broken_rule(const CompensatorSettings<Scalar, Sensors, Err
     if (!(output.clamp_um > 0 && output.clamp_um <= most)) return "outputs: clamp_um is above 0 and at most 1e6";
     if (!(output.slew_um_per_step > 0 && output.slew_um_per_step <= most))
       return "outputs: slew_um_per_step is above 0 and at most 1e6";
+    if (!(output.clamp_um - output.slew_um_per_step < output.clamp_um))
+      return "outputs: slew_um_per_step is not lost in the rounding of clamp_um";
   }
   if (settings.domain_policy > DomainPolicy::hold) return "domain_policy is one of ignore, warn, shrink, hold";
   if (settings.sign != OutputSign::error && settings.sign != OutputSign::correction)
     return "sign is error or correction";
+  if (settings.zero.policy > ZeroPolicy::first) return "zero.policy is wait or first";
+  if (settings.zero.samples < 3 || settings.zero.samples > most_zero_samples) return "zero.samples is 3 to 9";
+  if (settings.stale_steps < 1) return "stale_steps is at least 1";
   return nullptr;
 }
 

@@ -14,7 +14,18 @@ struct ControllerEquation {
   /// The error number `error` in um from temperatures in the model's order and reference (K of rise, or degC).
   template <class Temperatures>
   constexpr Scalar predict(std::size_t error, const Temperatures& temperatures) const noexcept {
-    Scalar sum = intercept_um[error];
+    return added_up(error, intercept_um[error], temperatures);
+  }
+
+  /// What the error number `error` has changed by, um, where the temperatures have changed by `rises`, K.
+  template <class Temperatures>
+  constexpr Scalar change(std::size_t error, const Temperatures& rises) const noexcept {
+    return added_up(error, Scalar(0), rises);
+  }
+
+ private:
+  template <class Temperatures>
+  constexpr Scalar added_up(std::size_t error, Scalar sum, const Temperatures& temperatures) const noexcept {
     for (std::size_t i = 0; i < coefficients[error].size(); ++i) sum += coefficients[error][i] * temperatures[i];
     return sum;
   }
@@ -39,12 +50,15 @@ template <class Scalar, int Sensors, int Errors, int Components>
 struct ControllerModel {
   using Equation = ControllerEquation<Scalar, Sensors, Errors>;  ///< temperatures to errors
 
-  bool rise = true;                      ///< temperatures count from the first usable readings; false: absolute degC
+  bool rise = true;                      ///< temperatures count from a zero (datum.hpp); false: absolute degC
   Equation equation{};                   ///< with all sensors
   Row<Equation, Sensors> substitutes{};  ///< without sensor i, its coefficients zero
   Row<bool, Sensors> has_substitute{};   ///< whether substitutes[i] can stand in
+  /// How far substitutes[i] may be from the equation, um, for sensor i to agree with the others; 0: not known
+  Row<Row<Scalar, Errors>, Sensors> agreement_um{};
   ControllerDomain<Scalar, Sensors, Components> domain{};  ///< what the training temperatures looked like
   Row<Scalar, Errors> centre_um{};  ///< prediction at the domain's mean: where `shrink` shrinks to
+  std::uint32_t identity = 0;       ///< tells models apart: a retained zero belongs to one
 
   /// How many temperatures it takes.
   constexpr std::size_t sensors() const noexcept { return has_substitute.size(); }

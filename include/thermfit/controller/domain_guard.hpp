@@ -24,6 +24,22 @@ class DomainGuard {
   /// Makes room for the scores of `domain`. Only dynamic rows allocate.
   void reset(const Domain& domain) { detail::set_size(scores_, domain.inverse_score_variance.size()); }
 
+  /// Puts into `temperatures` what the domain expects `sensor` to be, from the others: the value that leaves it no
+  /// residual of its own, x = sum_a p_a sum_(k != i) r_ka z_k / (1 - sum_a p_a r_ia) in standardised temperatures.
+  void fill_in(const Domain& domain, Row<Scalar, Sensors>& temperatures, std::size_t sensor) const noexcept {
+    Scalar expected = 0, own = 0;
+    for (std::size_t a = 0; a < scores_.size(); ++a) {
+      Scalar score = 0;
+      for (std::size_t i = 0; i < domain.mean.size(); ++i)
+        if (i != sensor)
+          score += domain.rotations[a][i] * ((temperatures[i] - domain.mean[i]) * domain.inverse_scale[i]);
+      expected += domain.loadings[a][sensor] * score;
+      own += domain.loadings[a][sensor] * domain.rotations[a][sensor];
+    }
+    const Scalar standardised = own < Scalar(0.99) ? expected / (1 - own) : Scalar(0);
+    temperatures[sensor] = domain.mean[sensor] + standardised / domain.inverse_scale[sensor];
+  }
+
   /// 1 inside the domain; else the factor in 0…1 by which the way from the mean to `temperatures` must shrink for the
   /// sample to lie on the edge: sqrt(limit / distance), the smaller of T2's and SPE's. 0 when that is no number.
   Scalar share_inside(const Domain& domain, const Row<Scalar, Sensors>& temperatures) noexcept {

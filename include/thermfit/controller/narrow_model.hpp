@@ -49,6 +49,21 @@ void fill_columns(Row<Row<Scalar, Size>, Rows>& rows, const Matrix& columns, con
     fill<Scalar, Size>(rows[static_cast<std::size_t>(j)], columns.col(j), what);
 }
 
+/// A number for each model: FNV-1a, 32 bits, over names, reference and coefficients; never 0.
+inline std::uint32_t identity_of(const TrainedModel& trained) {
+  std::uint32_t result = 2166136261u;
+  const auto add = [&](const void* bytes, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k) result = (result ^ static_cast<const unsigned char*>(bytes)[k]) * 16777619u;
+  };
+  for (const std::string& name : trained.temperatures) add(name.c_str(), name.size() + 1);
+  const Index values = trained.model.coefficients.size(), errors = trained.model.intercept.size();
+  add(trained.model.coefficients.data(), static_cast<std::size_t>(values) * sizeof(double));
+  add(trained.model.intercept.data(), static_cast<std::size_t>(errors) * sizeof(double));
+  const bool rise = trained.reference == TemperatureReference::rise;
+  add(rise ? "rise" : "absolute", 4);
+  return result == 0 ? 1 : result;
+}
+
 }  // namespace detail
 
 /// The fixed-size (or, on the host, dynamic) controller model that computes what `trained` predicts.
@@ -73,12 +88,17 @@ ControllerModel<Scalar, Sensors, Errors, Components> narrow_model(const TrainedM
   detail::fit_size<typename Model::Equation, Sensors>(model.substitutes, sensors, "sensors");
   detail::fit_size<bool, Sensors>(model.has_substitute, sensors, "sensors");
   for (auto& substitute : model.substitutes) fill_equation(substitute, nothing);
+  detail::fit_size<Row<Scalar, Errors>, Sensors>(model.agreement_um, sensors, "sensors");
+  for (auto& agreement : model.agreement_um)
+    detail::fill<Scalar, Errors>(agreement, Vector::Zero(trained.model.errors()), "errors");
   for (const SubstituteModel& substitute : trained.substitutes) {
     const auto lost = static_cast<std::size_t>(substitute.lost);
     if (substitute.lost < 0 || substitute.lost >= sensors || substitute.model.coefficients.rows() != sensors)
       throw Error("controller model", "a substitute for sensor " + std::to_string(substitute.lost), "0 to sensors - 1");
     fill_equation(model.substitutes[lost], substitute.model);
     for (auto& row : model.substitutes[lost].coefficients) row[lost] = 0;
+    if (substitute.agreement_um.size() == trained.model.errors())
+      detail::fill<Scalar, Errors>(model.agreement_um[lost], substitute.agreement_um, "errors");
     model.has_substitute[lost] = true;
   }
 
@@ -98,6 +118,7 @@ ControllerModel<Scalar, Sensors, Errors, Components> narrow_model(const TrainedM
   model.domain.spe_limit =
       detail::narrowed<Scalar>(bounded(wide ? domain.spe_limit_99 : domain.spe_limit_95), "SPE limit");
   detail::fill<Scalar, Errors>(model.centre_um, trained.model.predict(mean), "errors");
+  model.identity = detail::identity_of(trained);
   return model;
 }
 

@@ -14,17 +14,24 @@ namespace thermfit {
 
 /// Wishes about a compensator. What is left empty follows from the model.
 struct CompensationWishes {
-  double period_s = 1;             ///< of the controller cycle that calls step()
-  std::optional<double> clamp_um;  ///< default: |mean| + 4 standard deviations of the training errors, rounded up
-  double slew_um_per_s = 1;        ///< the slowest of the controls in export cards follows 1 um/s
-  double lost_after_s = 5;         ///< bad readings for so long make a sensor lost
-  double recover_after_s = 30;     ///< good readings for so long make it trusted again
-  double hold_s = 600;             ///< an offset is held at most so long, then ramps to zero
-  double range_margin_K = 20;      ///< readings may lie so far outside those of training
-  double rate_factor = 5;          ///< and change so many times faster,
-  double rate_floor_K = 1;         ///< plus one step of this size for noise and resolution
-  double stuck_factor = 3;         ///< and rest so many times longer; 0: stuck sensors are not looked for
-  double others_moved_K = 2;       ///< while the others moved by this on average
+  double period_s = 1;                 ///< of the controller cycle that calls step()
+  std::optional<double> clamp_um;      ///< default: |mean| + 4 standard deviations of the training errors, rounded up
+  double slew_um_per_s = 1;            ///< the slowest of the controls in export cards follows 1 um/s
+  double lost_after_s = 5;             ///< bad readings for so long make a sensor lost
+  double recover_after_s = 30;         ///< good readings for so long make it trusted again
+  double hold_s = 600;                 ///< an offset is held at most so long, then ramps to zero
+  double range_margin_K = 20;          ///< readings may lie so far outside those of training
+  double rate_factor = 5;              ///< and change so many times faster,
+  double rate_floor_K = 1;             ///< plus one step of this size for noise and resolution
+  double stuck_factor = 3;             ///< and rest so many times longer; 0: stuck sensors are not looked for
+  double others_moved_K = 2;           ///< while the others moved by this on average
+  double frozen_factor = 4;            ///< whatever the others do, a sensor that rests so many times longer is frozen,
+  double frozen_floor_s = 1800;        ///< plus so long; factor 0: frozen sensors are not looked for
+  double stale_s = 5;                  ///< so long without a new heartbeat makes readings stale
+  ZeroPolicy zero = ZeroPolicy::wait;  ///< what to do without a zero
+  bool through_zero = false;           ///< no intercept: offset 0 at a first zero; after a datum always
+  double zero_window_s = 5;            ///< samples of so long, at least three, must agree to become the zero
+  double first_margin_K = 5;           ///< a first zero lies at most so far outside the beginnings of training
   DomainPolicy domain_policy = DomainPolicy::warn;     ///< what to do with a sample unlike those of training
   DomainLimit domain_limit = DomainLimit::percent_99;  ///< which limit tells that it is unlike
   OutputSign sign = OutputSign::correction;            ///< what the offset means to the control
@@ -47,13 +54,30 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
   if (!(wishes.period_s > 0)) throw Error("period_s", "not above 0", "the cycle time in seconds");
   CompensatorSettings<Scalar, Sensors, Errors> settings;
   const SensorEnvelope& known = trained.envelope;
+  settings.zero = {wishes.zero,
+                   std::min(most_zero_samples, std::max(3u, detail::steps_in(wishes.zero_window_s, wishes.period_s))),
+                   wishes.through_zero};
+  settings.stale_steps = std::max(1u, detail::steps_in(wishes.stale_s, wishes.period_s));
+  double all_rest_min = std::numeric_limits<double>::max();  // no longer than the one that moves most
   detail::fit_size<SensorLimits<Scalar>, Sensors>(settings.sensors, trained.model.sensors(), "sensors");
   for (Index i = 0; i < trained.model.sensors(); ++i) {
     SensorLimits<Scalar>& limits = settings.sensors[static_cast<std::size_t>(i)];
     limits.lowest_degC = static_cast<Scalar>(known.has_range() ? known.lowest_degC(i) - wishes.range_margin_K : -50);
     limits.highest_degC = static_cast<Scalar>(known.has_range() ? known.highest_degC(i) + wishes.range_margin_K : 150);
     limits.largest_step_K = Scalar(1e6);
+    double drift_K = 0;  // over the samples of a zero
+    if (known.has_rates())
+      drift_K = known.largest_rate_K_per_min(i) / 60 * (settings.zero.samples - 1) * wishes.period_s;
+    limits.agree_K =
+        static_cast<Scalar>(known.has_starts() ? std::max(0.05, known.scatter_K(i)) + drift_K : 1 + drift_K);
+    if (known.has_starts()) {
+      limits.first_lowest_degC = static_cast<Scalar>(known.first_lowest_degC(i) - wishes.first_margin_K);
+      limits.first_highest_degC = static_cast<Scalar>(known.first_highest_degC(i) + wishes.first_margin_K);
+    }
     if (!known.has_rates()) continue;
+    const double rests_s = 60 * known.longest_still_min(i) * wishes.frozen_factor + wishes.frozen_floor_s;
+    limits.frozen_steps = wishes.frozen_factor > 0 ? std::max(2u, detail::steps_in(rests_s, wishes.period_s)) : 0;
+    all_rest_min = std::min(all_rest_min, known.longest_still_min(i));
     const double per_step_K = known.largest_rate_K_per_min(i) / 60 * wishes.period_s;
     limits.largest_step_K = static_cast<Scalar>(wishes.rate_floor_K + wishes.rate_factor * per_step_K);
     const double still_s = 60 * known.longest_still_min(i) * wishes.stuck_factor;
@@ -61,7 +85,10 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
   }
   settings.patience = {std::max(1u, detail::steps_in(wishes.lost_after_s, wishes.period_s)),
                        std::max(1u, detail::steps_in(wishes.recover_after_s, wishes.period_s)),
-                       static_cast<Scalar>(wishes.others_moved_K)};
+                       static_cast<Scalar>(wishes.others_moved_K), 0};
+  if (known.has_rates() && wishes.frozen_factor > 0)
+    settings.patience.all_frozen_steps = std::max(
+        2u, detail::steps_in(60 * all_rest_min * wishes.frozen_factor + wishes.frozen_floor_s, wishes.period_s));
   settings.hold_steps = detail::steps_in(wishes.hold_s, wishes.period_s);
   settings.domain_policy = trained.domain.score_variance.size() > 0 ? wishes.domain_policy : DomainPolicy::ignore;
   settings.sign = wishes.sign;

@@ -6,15 +6,25 @@
 
 namespace thermfit {
 
+/// Where a zero comes from.
+enum class ZeroSource : std::uint8_t {
+  none,     ///< there is none
+  first,    ///< the first samples after the start
+  datum,    ///< the samples after the work offset was probed
+  retained  ///< kept from before a power cycle
+};
+
 /// Why a sensor is not used.
 enum class SensorFault : std::uint8_t {
-  none,         ///< it is used
-  not_finite,   ///< NaN or infinite
-  range,        ///< outside the readings that make sense for it
-  rate,         ///< changed faster than it can since it was last trusted
-  stuck,        ///< has not changed for long while the others moved
-  recovering,   ///< was lost, reads well again, not yet for long enough
-  no_reference  ///< was lost when the zero of the temperature rise was taken; needs a restart
+  none,          ///< it is used
+  not_finite,    ///< NaN or infinite
+  range,         ///< outside the readings that make sense for it
+  rate,          ///< changed faster than it can since it was last trusted
+  stuck,         ///< has not changed for longer than it rests, or while the others moved
+  recovering,    ///< was lost, reads well again, not yet for long enough
+  no_reference,  ///< was lost when the zero was taken; needs a datum
+  stale,         ///< the heartbeat stopped: old readings repeated
+  disagrees      ///< was lost, reads well again, but not what the others say
 };
 
 /// The status of one step in one 32-bit word, the same for every target:
@@ -29,6 +39,8 @@ enum class SensorFault : std::uint8_t {
 /// | 8–15  | number of the first sensor not used, counted from 1; 0 none |
 /// | 16–19 | SensorFault of that sensor |
 /// | 20–27 | how many sensors are not used |
+/// | 28–29 | ZeroSource: where the zero comes from |
+/// | 30    | a zero was asked for and is not there yet |
 struct CompensatorStatus {
   std::uint32_t word = 0;  ///< the bits of the table above
 
@@ -36,6 +48,8 @@ struct CompensatorStatus {
   static constexpr std::uint32_t clamped_bit = 1u << 5;         ///< bit 5 of the word
   static constexpr std::uint32_t slewing_bit = 1u << 6;         ///< bit 6 of the word
   static constexpr std::uint32_t bad_settings_bit = 1u << 7;    ///< bit 7 of the word
+
+  static constexpr std::uint32_t zero_pending_bit = 1u << 30;  ///< bit 30 of the word
 
   /// What the compensator does: bits 0–3.
   constexpr CompensatorState state() const noexcept { return static_cast<CompensatorState>(word & 15u); }
@@ -53,6 +67,10 @@ struct CompensatorStatus {
   constexpr SensorFault fault() const noexcept { return static_cast<SensorFault>(word >> 16 & 15u); }
   /// How many sensors are not used; 255 for more.
   constexpr int unused_sensors() const noexcept { return static_cast<int>(word >> 20 & 255u); }
+  /// Where the zero comes from.
+  constexpr ZeroSource zero_source() const noexcept { return static_cast<ZeroSource>(word >> 28 & 3u); }
+  /// Whether a zero was asked for and is not there yet.
+  constexpr bool zero_pending() const noexcept { return (word & zero_pending_bit) != 0; }
 
   /// The part of the word that tells about sensors. Numbers above 255 read 255.
   static constexpr std::uint32_t sensor_bits(std::uint32_t first, SensorFault fault, std::uint32_t count) noexcept {

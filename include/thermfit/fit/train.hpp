@@ -108,6 +108,22 @@ PlannedFit<Scalar> fit_plan(const Campaign& campaign, const TrainingPlan& plan, 
   return {thermfit::fit(plan.method, chosen, all.errors, plan.options), merged(batches)};
 }
 
+/// How far the whole model may be from the substitute while no sensor is lost: d' C d of the differences d of their
+/// coefficients, C the covariance of the training temperatures.
+template <typename Scalar>
+Vector agreement(const TrainedModel& trained, const SubstituteModel& substitute, const Moments<Scalar>& moments) {
+  const MatrixX<Scalar> covariance = moments.temperature_products() / static_cast<Scalar>(std::max<Index>(1, moments.rows() - 1));
+  const Vector noise = trained.model.coefficients.row(substitute.lost).transpose().cwiseAbs() *
+                       trained.envelope.scatter_K(substitute.lost);
+  Vector result(trained.model.errors());
+  for (Index j = 0; j < result.size(); ++j) {
+    const Vector difference = trained.model.coefficients.col(j) - substitute.model.coefficients.col(j);
+    const VectorX<Scalar> d = difference.template cast<Scalar>();
+    result(j) = 4 * std::sqrt(std::max(0., static_cast<double>(d.dot(covariance * d)))) + noise(j);
+  }
+  return result;
+}
+
 }  // namespace detail
 
 /// One model of all batches of a campaign, complete with training domain, substitutes for lost sensors, sensor
@@ -132,6 +148,8 @@ TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {}) {
   const FitOptions same = settled(plan.options, fitted.fit);
   trained.substitutes =
       substitute_models(fitted.all, [&](const Moments<Scalar>& m) { return fit(plan.method, m, same); });
+  for (SubstituteModel& substitute : trained.substitutes)
+    substitute.agreement_um = detail::agreement(trained, substitute, fitted.all);
   for (const Batch& batch : campaign) trained.batches.push_back({batch.name, batch.rows(), batch.digest});
   return trained;
 }

@@ -23,6 +23,8 @@ struct SubstituteModel {
   Index lost = 0;                ///< index into TrainedModel::temperatures
   LinearModel<> model;           ///< on all sensors in their order, coefficient of the lost one zero
   Vector residual_deviation_um;  ///< per error, on the training rows
+  Vector agreement_um;  ///< per error: while the lost sensor is well, the whole model is nearer than this to it
+                        ///< (4 standard deviations on the training rows, and the sensor's scatter); empty: unknown
 };
 
 /// A linear model with everything a predictor needs and where it came from: the in-memory `thermfit-model/1`.

@@ -37,6 +37,13 @@ class ModelWriter {
     describe(writer);
     object_[key] = std::move(inner);
   }
+  template <class Describe>
+  void optional(const char* key, bool present, Describe describe) {
+    object(key, present, describe);
+  }
+  void optional(const char* key, const Vector& values, Index) {
+    if (values.size() > 0) object_[key] = to_json<J>(values);
+  }
   template <class Item, class Describe>
   void list(const char* key, std::vector<Item>& items, Index, Describe describe) {
     J list = J::array();
@@ -85,6 +92,14 @@ class ModelReader {
     ModelReader reader(at(key));
     describe(reader);
     reader.finish();
+  }
+  /// What files of earlier versions do not have.
+  template <class Describe>
+  void optional(const char* key, bool, Describe describe) {
+    if (node_.json().contains(key)) object(key, true, describe);
+  }
+  void optional(const char* key, Vector& values, Index length) {
+    if (node_.json().contains(key)) vector(key, values, length);
   }
   template <class Item, class Describe>
   void list(const char* key, std::vector<Item>& items, Index most, Describe describe) {
@@ -171,11 +186,18 @@ void describe_model(Archive& io, TrainedModel& m) {
     inner.vector("largest_rate_K_per_min", e.largest_rate_K_per_min, rates);
     inner.vector("longest_still_min", e.longest_still_min, rates);
   });
+  io.optional("sensor_starts", m.envelope.has_starts(), [&](auto& inner) {
+    SensorEnvelope& e = m.envelope;
+    inner.vector("first_lowest_degC", e.first_lowest_degC, p);
+    inner.vector("first_highest_degC", e.first_highest_degC, p);
+    inner.vector("scatter_K", e.scatter_K, p);
+  });
   io.list("substitutes", m.substitutes, p, [&](auto& inner, SubstituteModel& s) {
     inner.integer("lost", s.lost, p - 1);
     inner.vector("intercept_um", s.model.intercept, q);
     inner.matrix("um_per_K", s.model.coefficients, p, q);
     inner.vector("residual_deviation_um", s.residual_deviation_um, q);
+    inner.optional("agreement_um", s.agreement_um, q);
   });
   io.list("batches", m.batches, 100000, [&](auto& inner, TrainingBatch& b) {
     inner.text("name", b.name);

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstring>
+#include <limits>
+
+#include "thermfit/controller/arithmetic.hpp"
+#include "thermfit/controller/row.hpp"
+
+namespace thermfit {
+
+/// A zero to be stored over a power cycle: plain data. "None" is not 0 degC: the mark is 0, and a sensor without a zero
+/// holds NaN. A copy that is torn, or another model's, is not taken.
+template <class Scalar, int Sensors>
+struct RetainedDatum {
+  std::uint32_t mark = 0;            ///< `valid_mark` where there is a zero
+  std::uint32_t model = 0;           ///< ControllerModel::identity of the model it belongs to
+  std::uint32_t through_zero = 0;    ///< 1: the intercept drops out
+  Row<Scalar, Sensors> zero_degC{};  ///< of each sensor; NaN: it had none
+  std::uint32_t digest = 0;          ///< FNV-1a, 32 bits, over the bytes of all the others in their order
+
+  static constexpr std::uint32_t valid_mark = 0x54464431u;  ///< "TFD1"
+
+  /// Whether it is whole, and the model's of that identity.
+  bool valid(std::uint32_t identity) const noexcept {
+    return mark == valid_mark && model == identity && digest == digest_of_all();
+  }
+
+  /// Marks it as the model's of that identity, with its digest.
+  void seal(std::uint32_t identity) noexcept {
+    mark = valid_mark;
+    model = identity;
+    digest = digest_of_all();
+  }
+
+ private:
+  template <class Value>
+  static std::uint32_t digested(std::uint32_t before, Value value) noexcept {
+    unsigned char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    for (const unsigned char byte : bytes) before = (before ^ byte) * 16777619u;
+    return before;
+  }
+
+  std::uint32_t digest_of_all() const noexcept {
+    std::uint32_t result = digested(digested(digested(2166136261u, mark), model), through_zero);
+    for (const Scalar zero : zero_degC) result = digested(result, is_finite(zero) ? zero : Scalar(-1e9));
+    return result;
+  }
+};
+
+}  // namespace thermfit
