@@ -32,11 +32,13 @@ std::string Console::strong(std::string_view text) const {
   return "\033[1m" + std::string(text) + "\033[0m";
 }
 
-void Console::flush() {
+bool Console::flush() {
   // A closed pipe: the reader had enough (head); that is its right.
-  if (!detail::write_all(STDOUT_FILENO, result_) && errno != EPIPE)
+  const bool arrived = detail::write_all(STDOUT_FILENO, result_);
+  if (!arrived && errno != EPIPE)
     throw Error("standard output", std::strerror(errno), "", "the result is not complete");
   result_.clear();
+  return arrived;
 }
 
 void Console::finish() {

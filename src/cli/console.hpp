@@ -35,9 +35,10 @@ class Console {
   void write_to(std::string path) { path_ = std::move(path); }
 
   /// Writes what has been printed so far to stdout now (for `run`, line by line). Throws Error on a failed write.
-  void flush();
+  bool flush();
 
-  /// Writes the result. Throws thermfit::Error when not every byte arrived; a pipe closed by its reader is no error.
+  /// Writes the result. Throws thermfit::Error when not every byte arrived; a pipe closed by its reader is no error:
+  /// then false.
   void finish();
 
  private:

@@ -44,7 +44,9 @@ Exit run(const Arguments& arguments, Console& console) {
   if (!arguments.has("--missing")) reading.missing = MissingValues::keep;
   reading.increasing_time = false;
   std::vector<CheckedBatch> checked;
-  for (Batch& batch : read_files(reading, console, arguments.positionals()).batches) {
+  Campaign campaign = read_files(reading, console, arguments.positionals()).batches;
+  note_first_readings(campaign, TemperatureReference::rise, console);
+  for (Batch& batch : campaign) {
     std::vector<Finding> findings = find_faults(batch);
     checked.push_back({std::move(batch), std::move(findings)});
   }

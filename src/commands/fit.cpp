@@ -86,6 +86,7 @@ Exit run_fit(const Arguments& arguments, Console& console) {
   TrainingPlan plan;
   plan.options = fit_options(arguments);
   plan.reference = temperature_reference(arguments);
+  note_first_readings(campaign, plan.reference, console);
   plan.row_wise = arguments.has("--row-wise");
   const std::string method = arguments.choice("--method", {"pls", "mlr", "pcr", "ridge"}, "pls");
   for (const Method one : {Method::pls, Method::mlr, Method::pcr, Method::ridge})

@@ -90,6 +90,7 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   if (options.errors.empty()) options.errors = model.errors;
   options.errors_may_lack = true;
   const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
+  note_first_readings(campaign, model.reference, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
   if (const auto path = arguments.value("--output")) console.write_to(*path);

@@ -13,9 +13,15 @@ namespace {
 const char* const details =
     "Reads temperatures as CSV lines from standard input and answers each line with one, at once: for pipes from MQTT, "
     "OPC UA or a data logger. The first line names the columns; those of the model are found by name (units in "
-    "brackets are converted), others are passed over. One line is one step of --period seconds.\n"
+    "brackets are converted), others are passed over. One line is one step of --period seconds; where a time column "
+    "(time_s, time_min, ...) tells more or less, that counts.\n"
     "\n"
-    "Answer: line number, offset of each error in um, state, status word, first sensor not used, why. A line that "
+    "Corrections are relative to the thermal state when the work offset was probed. A line `datum` says that it is "
+    "probed now: the next lines that agree become the zero, and the offset 0 there. --state FILE keeps the zero over a "
+    "power cycle. Without either the state is `no datum` and the offset 0, unless --zero first takes the first lines.\n"
+    "\n"
+    "Answer: line number, offset of each error in um, state, status word, first sensor not used, why, where the zero "
+    "is from. A line that "
     "cannot be read, or a cell that is no number, counts as readings that are missing: the offset is held, the answer "
     "still comes. --watchdog S answers also when no line came for S seconds.\n"
     "\n"
@@ -27,7 +33,8 @@ const char* const details =
 Exit run_run(const Arguments& arguments, Console& console) {
   if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
   const TrainedModel trained = load_model(arguments.positionals()[0]);
-  LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"));
+  LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"),
+                        arguments.value_or("--state", ""));
   const double watchdog_s = arguments.number("--watchdog", .001, 86400).value_or(0);
 
   LineSource source(0);
@@ -44,13 +51,17 @@ Exit run_run(const Arguments& arguments, Console& console) {
     const LineSource::Got got = source.next(text, watchdog_s);
     if (got == LineSource::Got::end) break;
     if (got == LineSource::Got::line && !CsvLineReader::has_content(text)) continue;
-    const bool readable = got == LineSource::Got::line && live.read_readings(text);
+    const bool datum = got == LineSource::Got::line && text == "datum";
+    if (datum) live.take_datum();
+    const bool readable = datum || (got == LineSource::Got::line && live.read_readings(text));
     if (got == LineSource::Got::line && !readable && bad_lines++ < 10)
       console.note("standard input:" + std::to_string(source.line_number()) +
                    ": not as many cells as the first line names; counts as missing readings");
-    if (!readable) live.lose_readings();
+    if (!readable) live.lose_readings(got == LineSource::Got::nothing ? watchdog_s : 0);
+    for (const std::string& remark : live.remarks()) console.note(remark);
     console.line(live.answer(source.line_number()));
-    console.flush();
+    if (!console.flush())  // nobody compensates: whoever watches this process must see it
+      throw Error("standard output", "the reader of the answers is gone", "", "start it and this again");
   }
   if (bad_lines > 10) console.note(std::to_string(bad_lines) + " lines could not be read");
   for (const std::string& remark : live.summary()) console.note(remark);
@@ -58,8 +69,10 @@ Exit run_run(const Arguments& arguments, Console& console) {
 }
 
 std::vector<Option> options() {
-  std::vector<Option> all{{"--shadow", "", "tell what would be applied, apply nothing", 0, false},
-                          {"--watchdog", "S", "answer with missing readings when no line came for so long", 0, false}};
+  std::vector<Option> all{
+      {"--state", "FILE", "keeps the zero over a power cycle; written when a zero is taken", 0, false},
+      {"--shadow", "", "tell what would be applied, apply nothing", 0, false},
+      {"--watchdog", "S", "answer with missing readings when no line came for so long", 0, false}};
   for (Option& option : compensation_options()) all.push_back(std::move(option));
   return all;
 }
@@ -72,8 +85,9 @@ Command run_command() {
           "MODEL.json",
           details,
           options(),
-          {{"thermfit run model.json < data/vcenter55/K02.csv", "the answers to a recorded batch"},
-           {"thermfit run model.json --shadow --period 300 --slew 0.1 < data/vcenter55/K02.csv",
+          {{"thermfit run model.json --zero first --period 300 < data/vcenter55/K02.csv",
+            "the answers to a recorded batch"},
+           {"thermfit run model.json --shadow --zero first --period 300 --slew 0.1 < data/vcenter55/K02.csv",
             "what would have been left of the measured error"}},
           run_run};
 }

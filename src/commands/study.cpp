@@ -69,6 +69,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
 
   StudyReport report;
   report.reference = temperature_reference(arguments);
+  note_first_readings(campaign, report.reference, console);
   report.temperatures = campaign.front().temperatures.names;
   report.errors = campaign.front().errors.names;
   for (const Batch& batch : campaign) {

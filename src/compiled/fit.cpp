@@ -4,6 +4,7 @@
 #include "thermfit/select/correlation.hpp"
 #include "thermfit/select/fcgr.hpp"
 #include "thermfit/select/rule.hpp"
+#include "thermfit/statistics/residual_noise.hpp"
 
 #undef THERMFIT_COMPILED_ELSEWHERE
 #define THERMFIT_COMPILED_ELSEWHERE

@@ -98,17 +98,23 @@ std::string amount(double um, const OffsetUnit& unit) {
   return fixed_text(um * unit.per_um, unit.identifier == "mm" ? 5 : unit.identifier == "tenth_um" ? 1 : 2);
 }
 
+/// Whether the intercept drops out: relative to a datum it does, and where it was so wished.
+bool through_zero(const ExportRequest& request) {
+  return request.trained.reference == TemperatureReference::rise &&
+         (request.wishes.zero == ZeroPolicy::wait || request.wishes.through_zero);
+}
+
 /// The offset as a formula in the control's unit: 1.2 - 3.4*T1.
 std::string formula(const ExportRequest& request, Index error) {
   const TrainedModel& model = request.trained;
   const double factor = static_cast<double>(static_cast<int>(request.wishes.sign)) * request.unit.per_um;
-  std::string text = general_text(model.model.intercept(error) * factor, 9);
+  std::string text = general_text(through_zero(request) ? 0. : model.model.intercept(error) * factor, 9);
   const bool rise = model.reference == TemperatureReference::rise;
   for (Index i = 0; i < model.model.sensors(); ++i) {
     const double slope = model.model.coefficients(i, error) * factor;
     const std::string name = comment_text(model.temperatures[static_cast<std::size_t>(i)]);
     text += (slope < 0 ? " - " : " + ") + general_text(std::abs(slope), 9) + "*" +
-            (rise ? "(" + name + " - " + name + "_start)" : name);
+            (rise ? "(" + name + " - " + name + "_zero)" : name);
   }
   return text;
 }
@@ -149,13 +155,22 @@ ControllerSource export_card(const ExportRequest& request) {
             ")\n    at most " + amount(limits.slew_um_per_step, request.unit) + " from one write to the next, every " +
             exact_text(request.wishes.period_s) + " s\n    slope over the axis position: 0\n";
   }
+  if (request.trained.reference == TemperatureReference::rise) {
+    text += "\n_zero: what the sensor read when ";
+    text += request.wishes.zero == ZeroPolicy::first
+                ? "the cold machine was switched on, as the median of several readings that agree, never a single one."
+                : "the work offset was probed, as the median of several readings that agree, never a single one and "
+                  "never what it read when the control was switched on. The offset is 0 there. Keep it in retentive "
+                  "memory with a mark that it is valid; without one write 0.";
+    text += "\n";
+  }
   text += "\nReadings that make sense; outside, or when a reading is missing, keep the last offset:\n\n";
   const auto& names = request.trained.temperatures;
   for (std::size_t i = 0; i < names.size(); ++i)
     text += "    " + comment_text(names[i]) + ": " + exact_text(settings.sensors[i].lowest_degC) + " to " +
             exact_text(settings.sensors[i].highest_degC) + " degC\n";
   text +=
-      "\nThe whole guard (rate, stuck and lost sensors, training domain, time-out) is in the function block of\n"
+      "\nThe whole guard (zero, rate, stuck and lost sensors, training domain, time-out) is in the function block of\n"
       "`thermfit export --target st`: run that in the PLC and write its output here.\n";
   const bool correction = request.wishes.sign == OutputSign::correction;
   text += "\n## Check of the sign\nWith the axis at rest and a probe on it, enter " + amount(10, request.unit) +

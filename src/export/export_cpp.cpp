@@ -15,7 +15,9 @@ struct CppText {
   }
   static std::string literal(const SensorLimits<Scalar>& limits) {
     return "{" + literal(limits.lowest_degC) + ", " + literal(limits.highest_degC) + ", " +
-           literal(limits.largest_step_K) + ", " + std::to_string(limits.stuck_steps) + "u}";
+           literal(limits.largest_step_K) + ", " + std::to_string(limits.stuck_steps) + "u, " +
+           std::to_string(limits.frozen_steps) + "u, " + literal(limits.first_lowest_degC) + ", " +
+           literal(limits.first_highest_degC) + ", " + literal(limits.agree_K) + "}";
   }
   static std::string literal(const OutputLimits<Scalar>& limits) {
     return "{" + literal(limits.clamp_um) + ", " + literal(limits.slew_um_per_step) + "}";

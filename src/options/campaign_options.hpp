@@ -30,6 +30,10 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths);
 CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths);
 Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths);
 
+/// Where temperatures count from the first row, says which first readings are off those that follow: they move every
+/// row of their batch.
+void note_first_readings(const Campaign& campaign, TemperatureReference reference, const Console& console);
+
 /// Throws Error, with the columns there are, when batches have no thermal error to be fitted or compared.
 void require_errors(const Campaign& campaign);
 

@@ -254,10 +254,10 @@ TEMPLATE_TEST_CASE("ten million random steps: always finite, in the clamp, withi
     }
     void datum() { device.take_datum(); }
     void stop() { device.stop(); }
-    void step(const std::array<Scalar, 3>& readings, std::uint32_t periods, std::uint32_t heartbeat) {
+    void step(const std::array<Scalar, 3>& readings, std::uint32_t passed, std::uint32_t heartbeat) {
       remember();
-      this->periods = static_cast<Scalar>(periods);
-      device.step(readings, {periods, heartbeat});
+      periods = static_cast<Scalar>(passed);
+      device.step(readings, {passed, heartbeat});
     }
   } subject{device, model.identity};
   std::set<std::pair<State, State>> seen;

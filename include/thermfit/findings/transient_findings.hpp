@@ -107,4 +107,21 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
   return findings;
 }
 
+/// How far the first reading of a temperature is off those that follow, K; 0 where it is not, or may be a start: what a
+/// user of rises should hear, since every rise of the batch counts from it. No fault by itself: a machine that was not
+/// at rest may begin so.
+///
+/// It leaves the course of the next four readings, taken back by the median of their steps, by more than a jump does,
+/// and gets to them by a step that is not along their course.
+inline double first_reading_off_K(const Series& series, const TransientLimits& limits = {}) {
+  const std::vector<double>& x = series.values;
+  if (x.size() < 5 || series.rows[4] != 4) return 0;
+  std::array<double, 3> steps{x[2] - x[1], x[3] - x[2], x[4] - x[3]};
+  std::sort(steps.begin(), steps.end());
+  const double trend = steps[1], first = x[1] - x[0];
+  const SeriesScale scale = series_scale(series);
+  const double limit = std::max(limits.jump_noise * scale.noise, limits.jump_steps * scale.resolution);
+  return std::abs(first - trend) > limit && first * trend <= 0 ? std::abs(first - trend) : 0;
+}
+
 }  // namespace thermfit

@@ -36,8 +36,12 @@ TrainedModel example() {
   d.rotations = d.loadings = v.weights;
   d.score_variance = Vector::Ones(1);
   d.t2_limit_95 = 4, d.t2_limit_99 = 7, d.spe_limit_95 = .1, d.spe_limit_99 = .2;
-  m.envelope = {Vector::Constant(2, 18), Vector::Constant(2, 31.5), Vector::Constant(2, .4), Vector::Constant(2, 25)};
-  m.substitutes = {{0, {(Matrix(2, 1) << 0, 3.6).finished(), Vector::Constant(1, 6)}, Vector::Constant(1, 3)}};
+  m.envelope = {Vector::Constant(2, 18), Vector::Constant(2, 31.5), Vector::Constant(2, .4), Vector::Constant(2, 25),
+                Vector::Constant(2, 19), Vector::Constant(2, 22),   Vector::Constant(2, .2)};
+  m.substitutes = {{0,
+                    {(Matrix(2, 1) << 0, 3.6).finished(), Vector::Constant(1, 6)},
+                    Vector::Constant(1, 3),
+                    Vector::Constant(1, 8)}};
   m.batches = {{"K01", 79, std::string(64, 'a')}};
   return m;
 }

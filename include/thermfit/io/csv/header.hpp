@@ -26,6 +26,14 @@ struct CsvColumn {
 
 namespace detail {
 
+/// The unit that a column's name says it is a time in: `s` for time_s, `?` for Time; empty when it is no time.
+inline std::string time_unit_in(const std::string& name) {
+  if (name == "Time" || name == "time" || name == "t") return "?";
+  if (name.rfind("time_", 0) != 0) return {};
+  const auto unit = find_unit(name.substr(5));
+  return unit && unit->quantity == Quantity::time ? name.substr(5) : std::string();
+}
+
 struct CsvHeader {
   std::vector<CsvColumn> columns;
   std::size_t line = 0;            ///< of the names; 0 when they were given

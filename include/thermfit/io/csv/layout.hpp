@@ -216,7 +216,7 @@ class LayoutMaker {
     std::vector<std::size_t> found;
     if (!options_.time_column.empty()) found.push_back(find(options_.time_column, "CsvOptions::time_column"));
     for (std::size_t c = 0; c < header_.columns.size() && options_.time_column.empty(); ++c)
-      if (taken_[c].empty() && !time_unit(column(c).name).empty()) found.push_back(c);
+      if (taken_[c].empty() && !time_unit_in(column(c).name).empty()) found.push_back(c);
     for (std::size_t c = 0; c < header_.columns.size() && found.empty() && options_.time_column.empty(); ++c)
       if (taken_[c].empty() && contents_[c].date_time && !contents_[c].numbers) found.push_back(c);
     if (found.size() > 1)
@@ -228,7 +228,7 @@ class LayoutMaker {
     CsvSlot& slot = layout_.slots[c];
     slot.role = contents_[c].date_time && !contents_[c].numbers ? CsvRole::date_time : CsvRole::time;
     if (slot.role == CsvRole::date_time) return;
-    const std::string by_name = time_unit(column(c).name);
+    const std::string by_name = time_unit_in(column(c).name);
     std::string unit = column(c).unit.empty() && by_name != "?" ? by_name : column(c).unit;
     if (!options_.time_unit.empty() && !unit.empty() && find_unit(unit) && find_unit(options_.time_unit) &&
         unit != options_.time_unit)
@@ -237,14 +237,6 @@ class LayoutMaker {
     layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
     if (unit.empty()) unit = options_.time_unit.empty() ? "min" : options_.time_unit;
     set_unit(slot, c, Quantity::time, unit);
-  }
-
-  /// The unit that a column's name says it is a time in: `s` for time_s, `?` for Time; empty when it is no time.
-  static std::string time_unit(const std::string& name) {
-    if (name == "Time" || name == "time" || name == "t") return "?";
-    if (name.rfind("time_", 0) != 0) return {};
-    const auto unit = find_unit(name.substr(5));
-    return unit && unit->quantity == Quantity::time ? name.substr(5) : std::string();
   }
 
   const CsvHeader& header_;

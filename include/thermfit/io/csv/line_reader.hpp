@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "thermfit/io/csv/date_time.hpp"
 #include "thermfit/io/csv/header.hpp"
 
 namespace thermfit {
@@ -45,6 +46,32 @@ class CsvLineReader {
                             {"unit '", columns_[*found].unit, "' of '", wanted, "'"},
                             {std::string(unit_names(quantity))});
     return found;
+  }
+
+  /// The column that tells the time: named as one (time_s, time_min, Time, t, with a unit or in minutes), as in a file;
+  /// or nothing. Throws Error when there are two.
+  std::optional<std::size_t> find_time() const {
+    std::optional<std::size_t> found;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (detail::time_unit_in(columns_[c].name).empty()) continue;
+      if (found)
+        throw detail::problem(detail::place(name_, line_number_, columns_[c].position),
+                              {columns_[c].name, " may be the time, and so may ", columns_[*found].name},
+                              {"one clock"});
+      found = c;
+    }
+    return found;
+  }
+
+  /// The cell of the column that find_time() gave, in s, an ISO 8601 time too; NaN when it holds neither.
+  double time_s(std::size_t column) const {
+    if (const auto time = parse_date_time(cells_[column])) return static_cast<double>(time->seconds) + time->fraction;
+    const std::string in_name = detail::time_unit_in(columns_[column].name);
+    std::string unit = columns_[column].unit.empty() ? in_name : columns_[column].unit;
+    if (unit == "?") unit = "min";
+    const auto known = find_unit(unit);
+    const auto number = detail::parse_field(cells_[column], '.');
+    return known && number ? known->to_canonical(*number) : detail::missing_value;
   }
 
   /// Takes the cells of a row. False, and the row before is kept, when it has not as many cells as there are names.
