@@ -86,6 +86,8 @@ std::string policy_name(DomainPolicy policy) {
   return names[static_cast<int>(policy)];
 }
 
+std::string zero_name(ZeroPolicy policy) { return policy == ZeroPolicy::first ? "first" : "wait"; }
+
 std::vector<std::string> facts(const ExportRequest& request) {
   const TrainedModel& model = request.trained;
   const auto settings = settings_for<double>(model, request.wishes);
