@@ -10,6 +10,20 @@ const char* const body =
 #include "export/compensator_c.inc"
     ;
 
+const char* const usage = R"(   @n@_initialise once; then @n@_resume with the zero that was kept over a power cycle, or
+   @n@_start where none is kept; then one @n@_step every @period@ s. @n@_stop ramps to zero.
+
+   What the control must provide:
+   - A zero: the thermal state that offsets are relative to, the one in which the work offset was probed.
+     Call @n@_datum whenever it is probed. Store what @n@_retain gives whenever @N@_ZERO(status) or
+     the bit @N@_ZERO_PENDING has changed, and hand it to @n@_resume.
+     Without a zero @without@.
+   - New readings, or NaN. Where they come over a bus that can go silent, a heartbeat that changes with each new set
+     of them, to @n@_step_after.
+   - The number of periods that have passed, to @n@_step_after, where cycles can be lost.
+
+)";
+
 const char* const self_test = R"(
 #ifdef @N@_SELF_TEST
 /* Courses of readings with the offsets and states they must lead to: define @N@_SELF_TEST in one source file and call
@@ -20,7 +34,10 @@ const char* const self_test = R"(
 
 typedef struct {
   uint32_t repeat;
-  uint32_t command; /* 0 none, 1 start, 2 stop: before the first repeat */
+  uint32_t command; /* before the first repeat: 0 none, 1 start, 2 stop, 3 datum, 4 power cycle, 5 the same with a torn
+                       copy of the zero */
+  uint32_t periods;
+  uint32_t beat; /* the heartbeat grows by this at each step */
   @n@_real temperatures_degC[@N@_SENSORS];
   @n@_real offset_um[@N@_ERRORS];
   uint32_t status;
@@ -33,6 +50,8 @@ static const @n@_vector @n@_vectors[] = {
 /* 0 when every vector came out as it must; else the number, from 1, of the first that did not. */
 static inline uint32_t @n@_self_test(void) {
   @n@_compensator self;
+  @n@_retained retained;
+  uint32_t heartbeat = 0U;
   uint32_t failed = 0U;
   uint32_t v;
   @n@_initialise(&self);
@@ -42,14 +61,24 @@ static inline uint32_t @n@_self_test(void) {
     uint32_t n;
     uint32_t j;
     if (vector->command == 1U) {
-      @n@_start(&self, NULL, NULL);
+      @n@_start(&self, NULL);
     } else if (vector->command == 2U) {
       @n@_stop(&self);
+    } else if (vector->command == 3U) {
+      @n@_datum(&self);
+    } else if (vector->command >= 4U) {
+      @n@_retain(&self, &retained);
+      if (vector->command == 5U) {
+        retained.digest ^= 1U;
+      }
+      @n@_initialise(&self);
+      @n@_resume(&self, &retained, NULL);
     } else {
       /* goes on */
     }
     for (n = 0U; n < vector->repeat; n++) {
-      (void)@n@_step(&self, vector->temperatures_degC, offset);
+      heartbeat += vector->beat;
+      (void)@n@_step_after(&self, vector->temperatures_degC, vector->periods, heartbeat, offset);
     }
     if (self.status != vector->status) {
       failed = v + 1U;
@@ -111,11 +140,17 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   text += define("ERRORS", c.literal(static_cast<std::uint32_t>(model.errors())));
   text += define("COMPONENTS", c.literal(static_cast<std::uint32_t>(model.domain.rotations.size())),
                  "of the training domain");
-  text += define("RISE", c.literal(model.rise), "temperatures count from the first usable sample");
+  text += define("RISE", c.literal(model.rise), "temperatures count from a zero");
+  text += define("MODEL", c.literal(model.identity), "a zero that was kept belongs to one");
   text += define("UNIT_PER_UM", c.literal(static_cast<Scalar>(request.unit.per_um)), request.unit.name + " per um");
   text += define("LOST_AFTER_STEPS", c.literal(settings.patience.lost_after_steps));
   text += define("RECOVER_AFTER_STEPS", c.literal(settings.patience.recover_after_steps));
   text += define("OTHERS_MOVED_K", c.literal(settings.patience.others_moved_K));
+  text += define("STALE_STEPS", c.literal(settings.stale_steps), "without a new heartbeat");
+  text += define("TAKES_FIRST", c.literal(settings.zero.policy == ZeroPolicy::first),
+                 "without a zero, from the first samples");
+  text += define("THROUGH_ZERO", c.literal(settings.zero.through_zero), "then without the intercept");
+  text += define("ZERO_SAMPLES", c.literal(settings.zero.samples), "that must agree");
   text += define("DOMAIN_IGNORE", "0U") + define("DOMAIN_WARN", "1U") + define("DOMAIN_SHRINK", "2U") +
           define("DOMAIN_HOLD", "3U");
   text += define("DOMAIN_POLICY", N + "_DOMAIN_" + upper_case(policy_name(settings.domain_policy)));
@@ -134,6 +169,8 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   }
   text += c.array(real, "substitute_coefficients", per_sensor + per_error + per_sensor, coefficients);
   text += c.array(real, "substitute_intercept_um", per_sensor + per_error, intercepts);
+  text +=
+      c.array(real, "agreement_um", per_sensor + per_error, model.agreement_um, "for sensor i to agree; 0: not known");
   text += "/* The training domain. */\n";
   text += c.array(real, "mean", per_sensor, model.domain.mean) +
           c.array(real, "inverse_scale", per_sensor, model.domain.inverse_scale) +
@@ -142,20 +179,29 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
           c.array(real, "inverse_score_variance", per_component, model.domain.inverse_score_variance) +
           c.array(real, "centre_um", per_error, model.centre_um);
   text += "/* What a working sensor can do. */\n";
-  std::vector<Scalar> lowest, highest, step, clamp, slew;
-  std::vector<std::uint32_t> stuck;
+  std::vector<Scalar> lowest, highest, step, first_lowest, first_highest, agree, clamp, slew;
+  std::vector<std::uint32_t> stuck, frozen;
   for (const auto& sensor : settings.sensors) {
     lowest.push_back(sensor.lowest_degC);
     highest.push_back(sensor.highest_degC);
     step.push_back(sensor.largest_step_K);
     stuck.push_back(sensor.stuck_steps);
+    frozen.push_back(sensor.frozen_steps);
+    first_lowest.push_back(sensor.first_lowest_degC);
+    first_highest.push_back(sensor.first_highest_degC);
+    agree.push_back(sensor.agree_K);
   }
   for (const auto& output : settings.outputs) {
     clamp.push_back(output.clamp_um);
     slew.push_back(output.slew_um_per_step);
   }
   text += c.array(real, "lowest_degC", per_sensor, lowest) + c.array(real, "highest_degC", per_sensor, highest) +
-          c.array(real, "largest_step_K", per_sensor, step) + c.array("uint32_t", "stuck_steps", per_sensor, stuck);
+          c.array(real, "largest_step_K", per_sensor, step) + c.array("uint32_t", "stuck_steps", per_sensor, stuck) +
+          c.array("uint32_t", "frozen_steps", per_sensor, frozen) +
+          c.array(real, "first_lowest_degC", per_sensor, first_lowest, "where a first zero may lie") +
+          c.array(real, "first_highest_degC", per_sensor, first_highest) +
+          c.array(real, "agree_K", per_sensor, agree, "samples of a machine at rest");
+  text += "static const uint32_t " + n + "_all_frozen_steps = " + c.literal(settings.patience.all_frozen_steps) + ";\n";
   text += "/* What an axis may do. */\n";
   text += "static const uint32_t " + n + "_hold_steps = " + c.literal(settings.hold_steps) + ";\n";
   text += c.array(real, "clamp_um", per_error, clamp) + c.array(real, "slew_um_per_step", per_error, slew);
@@ -176,17 +222,19 @@ std::string c_compensator(const ExportRequest& request, bool with_self_test) {
   std::string vectors;
   std::size_t count = 0;
   if (with_self_test) {
-    for (const TestVector<Scalar>& vector : TestCourse<Scalar>(model, settings).run()) {
+    for (const TestVector<Scalar>& vector : TestCourse<Scalar>(model, settings).run_all()) {
       ++count;
       vectors += "    {" + c.literal(vector.repeat) + ", " + c.literal(std::uint32_t{vector.command}) + ", " +
-                 c.literal(vector.readings_degC) + ", " + c.literal(vector.offset_um) + ", " +
-                 c.literal(vector.status) + "},\n";
+                 c.literal(vector.periods) + ", " + c.literal(vector.beat) + ", " + c.literal(vector.readings_degC) +
+                 ", " + c.literal(vector.offset_um) + ", " + c.literal(vector.status) + "},\n";
     }
   }
   const std::map<std::string, std::string> values{{"n", n},
                                                   {"N", upper_case(n)},
                                                   {"0", c.literal(Scalar(0))},
                                                   {"1", c.literal(Scalar(1))},
+                                                  {"NO_ZERO", c.literal(Scalar(-1e9))},
+                                                  {"MOST_OWN", c.literal(Scalar(0.99))},
                                                   {"sqrt", single ? "sqrtf" : "sqrt"},
                                                   {"REAL_MAX", single ? "FLT_MAX" : "DBL_MAX"},
                                                   {"SIGN", request.wishes.sign == OutputSign::correction ? "-" : ""},
@@ -211,16 +259,24 @@ std::string c_source(const ExportRequest& request, bool with_self_test) {
 
 ControllerSource export_c(const ExportRequest& request) {
   const std::string N = upper_case(request.name);
-  return "/* Thermal compensation, C99. " + request.name + "_initialise once, " + request.name + "_start, then one " +
-         request.name + "_step a cycle.\n" + fact_comment(request, "  ") + "*/\n#ifndef " + N + "_H\n#define " + N +
-         "_H\n\n" + R"(#include <float.h>
+  return "/* Thermal compensation, C99.\n\n" +
+         fill_template(
+             usage,
+             {{"n", request.name},
+              {"N", N},
+              {"period", exact_text(request.wishes.period_s)},
+              {"without", request.trained.reference != TemperatureReference::rise ? "the temperatures count absolutely"
+                          : request.wishes.zero == ZeroPolicy::first
+                              ? "the first samples become the zero, as on a machine always started cold"
+                              : "there is no compensation and the state is " + N + "_NO_DATUM"}}) +
+         fact_comment(request, "  ") + "*/\n#ifndef " + N + "_H\n#define " + N + "_H\n\n" + R"(#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ + 0))
-#error "needs comparisons that NaN fails: build without -ffast-math and -ffinite-math-only"
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && (__FINITE_MATH_ONLY__ + 0)) || defined(_M_FP_FAST)
+#error "needs comparisons that NaN fails: build without -ffast-math, -ffinite-math-only and /fp:fast"
 #endif
 
 )" + c_source(request, true) +

@@ -41,20 +41,25 @@ std::string cpp_compensator(const ExportRequest& request) {
   return "namespace " + request.name + " {\n\nusing Compensator = thermfit::Compensator<" + scalar + ", " +
          std::to_string(model.sensors()) + ", " + std::to_string(model.errors()) + ", " +
          std::to_string(domain.rotations.size()) + ">;\n\ninline constexpr Compensator::Model model{\n    " +
-         text(model.rise) + ",  // temperatures count from the first usable sample\n    " + text(model.equation) +
+         text(model.rise) + ",  // temperatures count from a zero\n    " + text(model.equation) +
          ",  // um/K, intercept um\n    " + text(model.substitutes) + ",\n    " + text(model.has_substitute) +
-         ",  // sensors that have a substitute\n    {" + text(domain.mean) + ", " + text(domain.inverse_scale) +
+         ",  // sensors that have a substitute\n    " + text(model.agreement_um) +
+         ",  // um, how near its substitute is then\n    {" + text(domain.mean) + ", " + text(domain.inverse_scale) +
          ",\n     " + text(domain.rotations) + ",\n     " + text(domain.loadings) + ",\n     " +
          text(domain.inverse_score_variance) + ", " + text(domain.t2_limit) + ", " + text(domain.spe_limit) +
-         "},\n    " + text(model.centre_um) + "};\n\ninline constexpr Compensator::Settings settings{\n    " +
-         text(settings.sensors) + ",  // lowest, highest degC, largest step K, stuck steps\n    {" +
+         "},\n    " + text(model.centre_um) + ",\n    " + std::to_string(model.identity) +
+         "u};\n\ninline constexpr Compensator::Settings settings{\n    " + text(settings.sensors) +
+         ",  // lowest, highest degC, largest step K, stuck, frozen steps, first lowest, highest degC, agree K\n    {" +
          std::to_string(settings.patience.lost_after_steps) + "u, " +
-         std::to_string(settings.patience.recover_after_steps) + "u, " + text(settings.patience.others_moved_K) +
-         "},\n    " + std::to_string(settings.hold_steps) +
+         std::to_string(settings.patience.recover_after_steps) + "u, " + text(settings.patience.others_moved_K) + ", " +
+         std::to_string(settings.patience.all_frozen_steps) + "u},\n    " + std::to_string(settings.hold_steps) +
          "u,  // hold\n    thermfit::DomainPolicy::" + policy_name(settings.domain_policy) + ",\n    " +
          text(settings.outputs) +
          ",  // clamp um, slew um per step\n    thermfit::OutputSign::" + sign_name(settings.sign) +
-         "};\nstatic_assert(thermfit::broken_rule(settings) == nullptr);\n\n/// " + request.unit.name +
+         ",\n    {thermfit::ZeroPolicy::" + zero_name(settings.zero.policy) + ", " +
+         std::to_string(settings.zero.samples) + "u, " + text(settings.zero.through_zero) +
+         "},  // samples, whether a first zero goes through zero\n    " + std::to_string(settings.stale_steps) +
+         "u};  // stale\nstatic_assert(thermfit::broken_rule(settings) == nullptr);\n\n/// " + request.unit.name +
          " per um of Compensator::offset_um().\ninline constexpr " + scalar + " " + request.unit.identifier +
          "_per_um = " + text(static_cast<Scalar>(request.unit.per_um)) + ";\n\n}  // namespace " + request.name + "\n";
 }

@@ -36,7 +36,7 @@ FUNCTION(_) {
     ready = 1;
   }
   if (enable && !running) {
-    @n@_start(&device, NULL, NULL);
+    @n@_start(&device, NULL);
   }
   if (!enable && running) {
     @n@_stop(&device);

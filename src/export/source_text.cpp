@@ -86,6 +86,8 @@ std::string policy_name(DomainPolicy policy) {
   return names[static_cast<int>(policy)];
 }
 
+std::string zero_name(ZeroPolicy policy) { return policy == ZeroPolicy::first ? "first" : "wait"; }
+
 std::vector<std::string> facts(const ExportRequest& request) {
   const TrainedModel& model = request.trained;
   const auto settings = settings_for<double>(model, request.wishes);
@@ -98,7 +100,7 @@ std::vector<std::string> facts(const ExportRequest& request) {
       "",
       "in:  temperatures in degC, in this order: " + joined(model.temperatures),
       model.reference == TemperatureReference::rise
-          ? "     the model works on their rise since the first usable sample after the start"
+          ? "     the model works on their rise since the zero, the thermal state when the work offset was probed"
           : "     the model works on absolute temperatures",
       "out: offset of " + joined(model.errors) + " in " + request.unit.name,
       request.wishes.sign == OutputSign::correction

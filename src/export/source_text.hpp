@@ -43,5 +43,6 @@ std::string fact_comment(const ExportRequest& request, std::string_view mark);
 
 std::string sign_name(OutputSign sign);        ///< "error" or "correction"
 std::string policy_name(DomainPolicy policy);  ///< "ignore", "warn", "shrink", "hold"
+std::string zero_name(ZeroPolicy policy);      ///< "wait" or "first"
 
 }  // namespace thermfit::cli

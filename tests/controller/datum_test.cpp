@@ -122,7 +122,10 @@ TEST_CASE("a kept zero that is none, torn or another model's is not taken", "[co
   wrong[3].digest ^= 1;
   wrong[4].seal(machine.model.identity + 1);
   for (const auto& one : wrong) {
+    machine.device.resume(kept);
+    REQUIRE(machine.step(24).zero_source() == ZeroSource::retained);
     machine.device.resume(one);
+    CHECK(machine.device.status().zero_source() == ZeroSource::none);  // at once, before any step
     CHECK(machine.step(24, 60).state() == State::no_datum);
     CHECK(machine.z() == 0);
   }

@@ -31,10 +31,10 @@ def call(*command, **options):
     return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True, **options).stdout
 
 
-for scalar in ["float", "double"]:
+for scalar, zero in [("float", ["--zero", "first"]), ("double", [])]:
     for target, suffix in [("cpp", "hpp"), ("c", "h")]:
         call(thermfit, "export", model, "--target", target, "--scalar", scalar, "--name", "walk_" + scalar, "--clamp", 14,
-             "--slew", 0.7, "--hold-timeout", 15, "--domain", "shrink", "-o", os.path.join(work, "walk_%s.%s" % (scalar, suffix)))
+             "--slew", 0.7, "--hold-timeout", 15, "--domain", "shrink", *zero, "-o", os.path.join(work, "walk_%s.%s" % (scalar, suffix)))
 
 
 def build(core):

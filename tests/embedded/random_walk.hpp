@@ -30,12 +30,14 @@ enum class Mood : std::uint32_t { well, stuck, not_a_number, infinite, denormal,
 template <class Scalar>
 struct Sensor {
   std::int32_t hundredths = 2000;  // true temperature, 0.01 degC
+  std::int32_t goal = 2600;        // where it drifts to for a while
   Mood mood = Mood::well;
   std::uint32_t left = 0;
   Scalar last = 20;
 
   Scalar read(Random& random) {
-    hundredths += static_cast<std::int32_t>(random.below(21)) - 10 + (hundredths < 2600);
+    if (random.below(3000) == 0) goal = 1900 + static_cast<std::int32_t>(random.below(1200));
+    hundredths += static_cast<std::int32_t>(random.below(21)) - 10 + (hundredths < goal) - (hundredths > goal);
     if (left-- == 0) {
       const bool ill = random.below(4) == 0;
       mood = ill ? static_cast<Mood>(random.below(static_cast<std::uint32_t>(Mood::moods))) : Mood::well;
@@ -87,18 +89,20 @@ void run(Subject& subject, std::uint32_t steps, Look look) {
   std::array<Sensor<Scalar>, Sensors> sensors{};
   std::array<Scalar, Sensors> readings{}, zero{};
   std::array<Scalar, Errors> offsets{};
-  std::uint32_t heartbeat = 0;
-  bool beating = false;
+  std::uint32_t heartbeat = 0, silence = 0;  // the second half of the way has a heartbeat
   subject.start();
   for (std::uint32_t n = 0; n < steps; ++n) {
     const std::uint32_t command = random.below(5000);
     if (command >= 10 && command < 13) subject.datum();
-    if (command == 13) beating = !beating;
-    if (beating) ++heartbeat;
+    if (silence > 0)
+      --silence;
+    else if (n >= steps / 2)
+      ++heartbeat;
+    if (command >= 13 && command < 18) silence = random.below(30);
     const std::uint32_t lateness = random.below(1000);
     const std::uint32_t periods = lateness < 990 ? 1 : lateness < 995 ? 0 : random.below(20);
-    if (command < 4) subject.stop();
-    if (command == 4 || command == 5) subject.start();
+    if (command == 0) subject.stop();
+    if (command > 0 && command < 6) subject.start();
     if (command >= 6 && command < 10) {
       for (Scalar& offset : offsets) offset = static_cast<Scalar>(random.below(2000)) / 10 - 100;
       if (command == 9) offsets[0] = std::numeric_limits<Scalar>::quiet_NaN();

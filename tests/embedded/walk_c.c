@@ -6,21 +6,27 @@
 #include "walk_double.h"
 #include "walk_float.h"
 
-#define WRAP(name, real)                                                   \
-  static name##_compensator name##_device;                                 \
-  void name##_c_initialise(void);                                          \
-  void name##_c_start(const real* offset_um, const real* zero_degC);       \
-  void name##_c_stop(void);                                                \
-  uint32_t name##_c_step(const real* temperatures_degC, real* offset_um);  \
-  uint32_t name##_c_self_test(void);                                       \
-  void name##_c_initialise(void) { name##_initialise(&name##_device); }    \
-  void name##_c_start(const real* offset_um, const real* zero_degC) {      \
-    name##_start(&name##_device, offset_um, zero_degC);                    \
-  }                                                                        \
-  void name##_c_stop(void) { name##_stop(&name##_device); }                \
-  uint32_t name##_c_step(const real* temperatures_degC, real* offset_um) { \
-    return name##_step(&name##_device, temperatures_degC, offset_um);      \
-  }                                                                        \
+#define WRAP(name, real)                                                                                         \
+  static name##_compensator name##_device;                                                                       \
+  void name##_c_initialise(void);                                                                                \
+  void name##_c_start(const real* offset_um);                                                                    \
+  void name##_c_resume(const name##_retained* retained, const real* offset_um);                                  \
+  void name##_c_retain(name##_retained* retained);                                                               \
+  void name##_c_datum(void);                                                                                     \
+  void name##_c_stop(void);                                                                                      \
+  uint32_t name##_c_step(const real* temperatures_degC, uint32_t periods, uint32_t heartbeat, real* offset_um);  \
+  uint32_t name##_c_self_test(void);                                                                             \
+  void name##_c_initialise(void) { name##_initialise(&name##_device); }                                          \
+  void name##_c_start(const real* offset_um) { name##_start(&name##_device, offset_um); }                        \
+  void name##_c_resume(const name##_retained* retained, const real* offset_um) {                                 \
+    name##_resume(&name##_device, retained, offset_um);                                                          \
+  }                                                                                                              \
+  void name##_c_retain(name##_retained* retained) { name##_retain(&name##_device, retained); }                   \
+  void name##_c_datum(void) { name##_datum(&name##_device); }                                                    \
+  void name##_c_stop(void) { name##_stop(&name##_device); }                                                      \
+  uint32_t name##_c_step(const real* temperatures_degC, uint32_t periods, uint32_t heartbeat, real* offset_um) { \
+    return name##_step_after(&name##_device, temperatures_degC, periods, heartbeat, offset_um);                  \
+  }                                                                                                              \
   uint32_t name##_c_self_test(void) { return name##_self_test(); }
 
 WRAP(walk_float, float)

@@ -16,12 +16,16 @@ DEVIATIONS = {
 }
 USER = """#include "thermal.h"
 static thermal_compensator device;
+static thermal_retained kept;
 int main(void) {
   const thermal_real readings[THERMAL_SENSORS] = {20.0F, 20.0F, 20.0F};
   thermal_real offset[THERMAL_ERRORS];
   thermal_initialise(&device);
-  thermal_start(&device, NULL, NULL);
+  thermal_resume(&device, &kept, NULL);
   (void)thermal_step(&device, readings, offset);
+  thermal_datum(&device);
+  (void)thermal_step_after(&device, readings, 2U, 1U, offset);
+  thermal_retain(&device, &kept);
   thermal_stop(&device);
   return 0;
 }
@@ -48,7 +52,9 @@ def compiled(text, *flags):
 
 for scalar in ["float", "double"]:
     tolerance = "1e-3F" if scalar == "float" else "1e-9"
-    for options in [[], ["--domain", "hold", "--sign", "error"], ["--domain", "shrink", "--hold-timeout", "0", "--unit", "mm"]]:
+    for options in [[], ["--domain", "hold", "--sign", "error", "--zero", "first"],
+                    ["--domain", "shrink", "--hold-timeout", "0", "--unit", "mm", "--zero", "first", "--through-zero"],
+                    ["--domain", "ignore", "--stale-after", "1"]]:
         header = subprocess.run([thermfit, "export", model, "--target", "c", "--scalar", scalar, *options], check=True,
                                 capture_output=True, text=True).stdout
         write("thermal.h", header)

@@ -54,6 +54,7 @@ class Compensator {
     reset();
     if (model_.rise && !datum_.known() && settings_.zero.policy == ZeroPolicy::first) datum_.request(ZeroSource::first);
     raise(CompensatorEvent::start);
+    status_.word = 0;
     tell();
     return true;
   }
@@ -138,9 +139,8 @@ class Compensator {
 
   /// What every status word ends with.
   void tell() noexcept {
-    status_.word = (status_.word & ~std::uint32_t(15)) | static_cast<std::uint32_t>(state_) |
-                   static_cast<std::uint32_t>(datum_.source()) << 28 |
-                   (datum_.pending() ? CompensatorStatus::zero_pending_bit : 0);
+    status_.word |= static_cast<std::uint32_t>(state_) | static_cast<std::uint32_t>(datum_.source()) << 28 |
+                    (datum_.pending() ? CompensatorStatus::zero_pending_bit : 0);
   }
 
   bool heartbeat_stopped(const CompensatorCall& call) noexcept {

@@ -63,11 +63,14 @@ void controller_equation(benchmark::State& state) {
 /// Sensors, training domain, clamp and slew limit included.
 void guarded_step(benchmark::State& state) {
   Device::Settings settings;
-  for (std::size_t i = 0; i < sensors; ++i) settings.sensors[i] = {0, 60, 1, 100};
+  for (std::size_t i = 0; i < sensors; ++i) settings.sensors[i] = {0, 60, 1, 100, 1000};
+  settings.patience.all_frozen_steps = 1000;
   settings.outputs[0] = {100, 1};
+  settings.zero.policy = ZeroPolicy::first;
   const Device::Model made = model();
   Device device(made, settings);
   if (!device.start()) return state.SkipWithError("the compensator does not start");
+  for (const Readings& sample : readings()) device.step(sample);  // takes its zero
   timed(state, readings(), [&](const Readings& sample) {
     device.step(sample);
     return device.offset_um()[0];
