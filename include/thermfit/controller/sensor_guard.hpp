@@ -61,13 +61,13 @@ class SensorGuard {
         record.seen = true;
         if (record.still_steps < all_still) all_still = record.still_steps;
       }
-      total += record.reading_degC;
+      total += vouched(record);
     }
     const bool all_frozen = patience.all_frozen_steps > 0 && all_still >= patience.all_frozen_steps;
     const Scalar others_moved = patience.others_moved_K * static_cast<Scalar>(records_.size() - 1);
     for (std::size_t i = 0; i < records_.size(); ++i) {
       Record& record = records_[i];
-      const Scalar others = total - record.reading_degC;
+      const Scalar others = total - vouched(record);
       if (newcomer || record.still_steps == 0) {
         record.still_steps = 0;
         record.others_at_change = others;
@@ -120,6 +120,11 @@ class SensorGuard {
     const Scalar allowed = limits.largest_step_K * static_cast<Scalar>(counted(record.bad_steps, steps));
     if (record.seen && !(magnitude(reading - record.reading_degC) <= allowed)) return SensorFault::rate;
     return SensorFault::none;
+  }
+
+  /// What a sensor tells about whether the others should have moved: of one that is lost, only what was trusted.
+  static Scalar vouched(const Record& record) noexcept {
+    return record.lost ? record.trusted_degC : record.reading_degC;
   }
 
   static bool frozen(const Record& record, const SensorLimits<Scalar>& limits) noexcept {
