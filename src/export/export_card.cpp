@@ -116,7 +116,8 @@ std::string formula(const ExportRequest& request, Index error) {
     text += (slope < 0 ? " - " : " + ") + general_text(std::abs(slope), 9) + "*" +
             (rise ? "(" + name + " - " + name + "_zero)" : name);
   }
-  return text;
+  if (text.rfind("0 + ", 0) == 0) return text.substr(4);
+  return text.rfind("0 - ", 0) == 0 ? "-" + text.substr(4) : text;
 }
 
 }  // namespace

@@ -83,8 +83,8 @@ TEST_CASE("the answers of `run` name awkward errors and sensors so that they can
   cli::LiveCompensation live(model_of(awkward, {"Z, \"hot\"", "X"}), {}, true);
   live.read_header(R"("bed, left","the ""cold"" end","a;b;c",T4,"Z, ""hot""")", 1);
   CHECK(names_of(CsvLineReader(live.answer_header(), 1, "answers")) ==
-        std::vector<std::string>{"line", "offset_Z, \"hot\"_um", "offset_X_um", "state", "status", "sensor", "fault", "zero",
-                                 "shadow_Z, \"hot\"_um", "shadow_X_um", "remaining_Z, \"hot\"_um"});
+        std::vector<std::string>{"line", "offset_Z, \"hot\"_um", "offset_X_um", "state", "status", "sensor", "fault",
+                                 "zero", "shadow_Z, \"hot\"_um", "shadow_X_um", "remaining_Z, \"hot\"_um"});
   REQUIRE(live.read_readings("20,20,no number,20,1"));
   CsvLineReader answers(live.answer_header(), 1, "answers");
   CHECK(answers.take(live.answer(2)));

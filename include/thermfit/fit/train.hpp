@@ -112,7 +112,8 @@ PlannedFit<Scalar> fit_plan(const Campaign& campaign, const TrainingPlan& plan, 
 /// coefficients, C the covariance of the training temperatures.
 template <typename Scalar>
 Vector agreement(const TrainedModel& trained, const SubstituteModel& substitute, const Moments<Scalar>& moments) {
-  const MatrixX<Scalar> covariance = moments.temperature_products() / static_cast<Scalar>(std::max<Index>(1, moments.rows() - 1));
+  const MatrixX<Scalar> covariance =
+      moments.temperature_products() / static_cast<Scalar>(std::max<Index>(1, moments.rows() - 1));
   const Vector noise = trained.model.coefficients.row(substitute.lost).transpose().cwiseAbs() *
                        trained.envelope.scatter_K(substitute.lost);
   Vector result(trained.model.errors());

@@ -38,7 +38,7 @@ struct Marginal {
 /// of each account: what an account of two says about the other one.
 template <typename Scalar = double>
 std::vector<Marginal> marginals(const std::vector<Account>& accounts, const std::vector<double>& weight,
-                                       const std::string& besides, double listed) {
+                                const std::string& besides, double listed) {
   struct Entry {
     std::string effect, driver;
     Marginal marginal;

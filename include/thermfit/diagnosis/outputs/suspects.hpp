@@ -74,7 +74,7 @@ inline std::vector<Suspect> suspects_of(const OutputScan& scan, const PairedCamp
 /// Effects by what they are worth in one channel, each at its best there; most probable first.
 template <typename Scalar = double>
 std::vector<Suspect> suspects_in(Index own, const OutputScan& scan, const PairedCampaign& campaign,
-                                        const OutputThresholds& thresholds) {
+                                 const OutputThresholds& thresholds) {
   std::vector<Suspect> found;
   for (const TraceScore& score : scan.scores)
     for (const ChannelScore& part : score.channels) {
