@@ -1,9 +1,17 @@
-/// Writes the example model of tests/controller to the file named.
+/// write_example_model FILE ABSOLUTE_FILE: writes the example model of tests/controller, and the same on absolute
+/// temperatures for a machine that starts at 18 degC.
 #include "controller/example_model.hpp"
 #include "thermfit/io/json/model.hpp"
 
 int main(int count, char** words) {
-  if (count != 2) return 2;
-  thermfit::save_model(example_model(), words[1]);
+  if (count != 3) return 2;
+  thermfit::TrainedModel model = example_model();
+  thermfit::save_model(model, words[1]);
+  model.reference = thermfit::TemperatureReference::absolute;
+  model.model.intercept -= model.model.coefficients.transpose() * Eigen::Vector3d(18, 18, 18);
+  model.domain.mean.array() += 18;
+  for (thermfit::SubstituteModel& substitute : model.substitutes)
+    substitute.model.intercept -= substitute.model.coefficients.transpose() * Eigen::Vector3d(18, 18, 18);
+  thermfit::save_model(model, words[2]);
   return 0;
 }
