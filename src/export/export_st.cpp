@@ -1,6 +1,5 @@
-#include <cctype>
-
 #include "export/source_text.hpp"
+#include "export/st_text.hpp"
 #include "export/test_vectors.hpp"
 #include "thermfit/error.hpp"
 
@@ -16,7 +15,22 @@ namespace thermfit::cli {
 namespace {
 
 template <class Scalar>
-class StWriter {
+class StWriter : StText<Scalar> {
+  using Text = StText<Scalar>;
+  using Text::count;
+  using Text::finite;
+  using Text::line;
+  using Text::most_steps;
+  using Text::number;
+  using Text::numbered;
+  using Text::of_steps;
+  using Text::real;
+  using Text::set;
+  using Text::set_if;
+  using Text::type;
+  using Text::within;
+  using Text::without_sign;
+
  public:
   using Device = HostCompensator<Scalar>;
 
@@ -28,7 +42,6 @@ class StWriter {
         errors_(identifiers(request.trained.errors)) {}
 
   std::string compensator() {
-    text_.clear();
     line("FUNCTION_BLOCK " + request_.name);
     variables();
     commands();
@@ -50,11 +63,10 @@ class StWriter {
     line("END_IF;");
     outputs();
     line("END_FUNCTION_BLOCK");
-    return text_;
+    return Text::taken();
   }
 
   std::string test() {
-    text_.clear();
     const auto vectors = TestCourse<Scalar>(model_, settings_, Scalar(1e6)).run();
     line("FUNCTION_BLOCK " + request_.name + "_test");
     line("(* Call once a cycle until Done. Failed is then 0, or the number of the first vector that went wrong. *)");
@@ -101,50 +113,18 @@ class StWriter {
     line("END_IF;");
     line("END_IF;");
     line("END_FUNCTION_BLOCK");
-    return text_;
+    return Text::taken();
   }
 
  private:
-  inline static const std::string most_steps = "1000000000";  // so that no counter leaves a DINT
   inline static const std::string valid_mark = "1413891121";  // RetainedDatum::valid_mark
 
-  static std::string type() { return std::is_same_v<Scalar, float> ? "REAL" : "LREAL"; }
-  static std::string number(std::size_t index) { return std::to_string(index + 1); }
-  static std::string numbered(const std::string& name, std::size_t index) { return name + number(index); }
-  static std::string real(Scalar value) {
-    const std::string text = upper_case(real_text(value));
-    return value < 0 ? "(" + text + ")" : text;
-  }
-  static std::string of_steps(const std::string& steps) { return "UDINT_TO_" + type() + "(" + steps + ")"; }
-  static std::string finite(const std::string& value) {
-    const std::string most = real(std::numeric_limits<Scalar>::max());
-    return value + " >= (-" + most + ") AND " + value + " <= " + most;
-  }
-  static std::string within(const std::string& value, Scalar lowest, Scalar highest) {
-    return value + " >= " + real(lowest) + " AND " + value + " <= " + real(highest);
-  }
   std::size_t sensors() const { return sensors_.size(); }
   std::size_t errors() const { return errors_.size(); }
   std::size_t components() const { return model_.domain.rotations.size(); }
   std::string input(std::size_t i) const { return "Temperature_" + sensors_[i]; }
   std::string output(std::size_t j) const { return "Offset_" + errors_[j] + "_" + request_.unit.identifier; }
   static std::string of(std::size_t i, const std::string& what) { return "s" + number(i) + "_" + what; }
-
-  /// One line, indented by the blocks that are open.
-  void line(const std::string& text) {
-    const auto starts = [&](const char* word) { return text.rfind(word, 0) == 0; };
-    const bool closed_in_line = text.find("END_IF;") != std::string::npos && !starts("END_IF");
-    if ((starts("END_") && !starts("END_FUNCTION")) || starts("ELSE") || starts("ELSIF")) indent_ -= 2;
-    text_ += std::string(indent_, ' ') + text + '\n';
-    if (!closed_in_line && (starts("IF ") || starts("ELSE") || starts("ELSIF") || starts("CASE") || starts("VAR")))
-      indent_ += 2;
-  }
-  void set(const std::string& variable, const std::string& value) { line(variable + " := " + value + ";"); }
-  void set_if(const std::string& condition, const std::string& variable, const std::string& value) {
-    line("IF " + condition + " THEN " + variable + " := " + value + "; END_IF;");
-  }
-  void without_sign(const std::string& variable) { set_if(variable + " < 0.0", variable, "-" + variable); }
-  void count(const std::string& counter) { set_if(counter + " <= " + most_steps, counter, counter + " + steps"); }
 
   std::string row(const TestVector<Scalar>& vector) const {
     std::string text =
@@ -796,8 +776,6 @@ class StWriter {
   const typename Device::Model& model_;
   const typename Device::Settings& settings_;
   std::vector<std::string> sensors_, errors_;
-  std::string text_;
-  std::size_t indent_ = 0;
 };
 
 template <class Scalar>
@@ -806,24 +784,6 @@ std::string st_compensator(const ExportRequest& request) {
   const auto settings = settings_for<Scalar>(request.trained, request.wishes);
   StWriter<Scalar> writer(request, model, settings);
   return writer.compensator() + '\n' + writer.test();
-}
-
-/// How often `word` stands in `code` outside comments, in any case.
-int uses(const std::string& code, const std::string& word) {
-  const std::string wanted = upper_case(word);
-  std::string token;
-  int found = 0;
-  for (std::size_t at = 0; at < code.size(); ++at) {
-    if (code.compare(at, 2, "(*") == 0) at = code.find("*)", at) + 1;
-    const char c = code[at];
-    if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {
-      token += c;
-      continue;
-    }
-    found += upper_case(token) == wanted;
-    token.clear();
-  }
-  return found;
 }
 
 const char* const advice =
@@ -841,7 +801,7 @@ const char* const advice =
 
 ControllerSource export_st(const ExportRequest& request) {
   const std::string code = request.single_precision ? st_compensator<float>(request) : st_compensator<double>(request);
-  if (uses(code, request.name) != 2)  // the block, and the instance in its test
+  if (st_uses(code, request.name) != 2)  // the block, and the instance in its test
     throw Error("name", "'" + request.name + "', which the function block calls something of its own", {},
                 "try " + identifiers({"thermal_" + request.name})[0]);
   return "(* Thermal compensation, IEC 61131-3 Structured Text: call " + request.name + " every " +

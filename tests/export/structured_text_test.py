@@ -234,7 +234,15 @@ failed, _ = self_test(blocks)
 print("a coefficient changed by 0.05 %%: test block failed at vector %d" % failed)
 assert failed > 0
 
-check("a first zero", model, "--zero", "first", "--domain", "hold", "--hold-timeout", "20")
+first = ["--zero", "first", "--domain", "hold", "--hold-timeout", "20"]
+_, blocks = check("a first zero", model, *first)
+rows = readings.readings(3000)
+device, wrong = blocks["thermal"](), 0
+for row, (offsets, status) in zip(rows, readings.run(thermfit, model, rows, *first)):
+    device(Enable=True, **{"Temperature_" + name: value for name, value in zip(readings.SENSORS, row)})
+    wrong += [device.offset_x_um, device.offset_z_um] != offsets or device.status != status
+print("3000 rows with faults: %d differ from thermfit run in a bit of offset or status" % wrong)
+assert wrong == 0
 
 free = ["--slew", "1e6", "--clamp", "1e5", "--domain", "ignore", "--zero", "first"]
 batch = readings.readings(500, seed=4, faults=False)
