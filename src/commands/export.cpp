@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
+#include "export/reserved_words.hpp"
 #include "export/source_text.hpp"
 #include "options/compensation_options.hpp"
 #include "thermfit/io/json/model.hpp"
@@ -55,6 +56,9 @@ Exit run_export(const Arguments& arguments, Console& console) {
     throw UsageError("--name is '" + request.name +
                      "'; allowed: up to 20 letters, digits and single underscores, "
                      "a letter first, one of them small");
+  if (const std::string languages = reserved_in(request.name); !languages.empty())
+    throw UsageError("--name is '" + request.name + "', a word of " + languages + "; try " +
+                     identifiers({"thermal_" + request.name})[0]);
   request.wishes = compensation_wishes(arguments);
   if (request.control == "fanuc" && !arguments.has("--sign")) request.wishes.sign = OutputSign::error;
   request.single_precision = arguments.choice("--scalar", {"float", "double"}, "double") == "float";

@@ -70,6 +70,28 @@ std::string c_name(std::string hal) {
   return hal;
 }
 
+/// The pins that are made from names of the model: HAL refuses a component of which two pins are called the same, or
+/// one longer than 47 characters with component and dot.
+class NamedPins {
+ public:
+  explicit NamedPins(std::string component) : component_(std::move(component)) {}
+
+  void add(const std::string& pin, const std::string& name) {
+    const std::string whole = component_ + '.' + pin;
+    if (whole.size() > 47)
+      throw Error("HAL pin " + whole, std::to_string(whole.size()) + " characters, for '" + name + "'", "47",
+                  "take a shorter --name, or rename the column and fit again");
+    const auto [known, is_new] = names_.emplace(pin, name);
+    if (!is_new)
+      throw Error("HAL pin " + whole, "for '" + known->second + "' and for '" + name + "'", "one name a pin",
+                  "rename a column and fit again");
+  }
+
+ private:
+  std::string component_;
+  std::map<std::string, std::string> names_;  ///< of the model, by pin
+};
+
 }  // namespace
 
 ControllerSource export_linuxcnc(const ExportRequest& given) {
@@ -89,14 +111,19 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
       "counts-scale, set axis.<letter>.eoffset-enable; the INI needs [AXIS_<letter>]OFFSET_AV_RATIO.\n\"\"\";\n";
   text += "pin in bit enable \"compensate; off ramps to zero\";\n";
   std::string inputs, outputs;
-  for (const std::string& name : identifiers(request.trained.temperatures)) {
-    const std::string pin = "temperature-" + hal_name(name);
+  NamedPins pins(hal_name(request.name));
+  const auto temperatures = identifiers(request.trained.temperatures);
+  for (std::size_t i = 0; i < temperatures.size(); ++i) {
+    const std::string pin = "temperature-" + hal_name(temperatures[i]);
+    pins.add(pin, request.trained.temperatures[i]);
     text += "pin in float " + pin + " \"degC\";\n";
     inputs += (inputs.empty() ? "*__comp_inst->" : ", *__comp_inst->") + c_name(pin);
   }
   const auto errors = identifiers(request.trained.errors);
   for (std::size_t j = 0; j < errors.size(); ++j) {
     const std::string pin = "offset-" + hal_name(errors[j]), index = "[" + std::to_string(j) + "]";
+    pins.add(pin, request.trained.errors[j]);
+    pins.add(pin + "-counts", request.trained.errors[j]);
     text += "pin out float " + pin + " \"" + request.unit.name + ", the " + sign_name(request.wishes.sign) + "\";\n";
     text += "pin out s32 " + pin + "-counts \"the same in counts of counts-scale\";\n";
     outputs += "  *__comp_inst->" + c_name(pin) + " = offset_" + request.unit.identifier + index + ";\n";

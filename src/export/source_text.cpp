@@ -54,9 +54,9 @@ std::vector<std::string> identifiers(const std::vector<std::string>& names) {
       else if (!identifier.empty() && identifier.back() != '_')
         identifier += '_';
     }
-    while (!identifier.empty() && identifier.back() == '_') identifier.pop_back();
     if (identifier.empty() || is_digit(identifier[0])) identifier = "P" + identifier;
     identifier = identifier.substr(0, 20);
+    while (identifier.back() == '_') identifier.pop_back();  // begins with a letter
     const std::string base = identifier;
     for (int n = 2; std::find(taken.begin(), taken.end(), upper_case(identifier)) != taken.end(); ++n)
       identifier = base + "_n" + std::to_string(n);
@@ -100,8 +100,8 @@ std::vector<std::string> facts(const ExportRequest& request) {
       "",
       "in:  temperatures in degC, in this order: " + joined(model.temperatures),
       model.reference == TemperatureReference::rise
-          ? "     the model works on their rise since the zero, the thermal state when the work offset was probed"
-          : "     the model works on absolute temperatures",
+          ? "     the model works on their rise since the zero: a datum, kept over a power cycle, or first samples"
+          : "     the model works on absolute temperatures; after a datum on their rise since it",
       "out: offset of " + joined(model.errors) + " in " + request.unit.name,
       request.wishes.sign == OutputSign::correction
           ? "     it is the correction, minus the predicted error: add it to the axis command"

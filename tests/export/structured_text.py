@@ -1,7 +1,8 @@
 """Runs IEC 61131-3 function blocks from blark's tree: enough of the language for what thermfit exports.
 
 A function block becomes a Python class with one attribute a variable and `__call__` for one cycle. What a compiler
-would refuse is an error here too: undeclared names, and a value of another type than the variable's.
+would refuse is an error here too: undeclared names, and a value of another type than the variable's. `after_power_cycle`
+makes an instance that has kept VAR RETAIN and nothing else.
 """
 
 import math
@@ -21,7 +22,7 @@ class FunctionBlock:
     """Writes one function block as Python text."""
 
     def __init__(self, block, known_blocks):
-        self.types, self.lines, self.known = {}, [], known_blocks
+        self.types, self.lines, self.known, self.retained = {}, [], known_blocks, []
         initial = []
         for section in block.declarations:
             for item in section.items:
@@ -31,6 +32,8 @@ class FunctionBlock:
                     if name in self.types:
                         raise SyntaxError("declared twice: " + name)
                     self.types[name] = type_name
+                    if "RETAIN" in str(getattr(section, "attrs", "")).upper():
+                        self.retained.append(name)
                     value = "known[%r]()" % type_name.lower() if type_name.lower() in known_blocks else None
                     initial.append((name, value or self.expression(item.init.value)))
         self.real = "REAL" if "REAL" in self.types.values() else "LREAL"
@@ -48,11 +51,14 @@ class FunctionBlock:
                 self.assign(instance, name.lower(), value)
             scope["cycle"](instance)
 
-        self.made = type(str(block.name), (), {"__init__": scope["initialise"], "__call__": call})
+        self.made = type(str(block.name), (), {"__init__": scope["initialise"], "__call__": call,
+                                               "retained": self.retained, "set": self.assign})
 
     def assign(self, instance, name, value):
         if type(value) is not TYPES[self.types[name]]:
             raise TypeError("%s is %s, not %s" % (name, self.types[name], type(value)))
+        if type(value) is int and not 0 <= value < 2**32:
+            raise OverflowError("%s := %d" % (name, value))
         setattr(instance, name, value)
 
     def name(self, variable):
@@ -76,8 +82,9 @@ class FunctionBlock:
             return "(%s %s)" % ("not" if str(node.op).upper() == "NOT" else str(node.op), self.expression(node.expr))
         if isinstance(node, tree.BinaryOperation):
             operator = str(node.op).upper()
-            return "(%s %s %s)" % (self.expression(node.left), OPERATORS.get(operator, operator),
-                                   self.expression(node.right))
+            kind = "bool" if operator[0] in "=<>" else ""  # numpy has a type of its own for it
+            return "%s(%s %s %s)" % (kind, self.expression(node.left), OPERATORS.get(operator, operator),
+                                     self.expression(node.right))
         if isinstance(node, tree.FunctionCall):
             return "%s(%s)" % (str(node.name.name).upper(), ", ".join(self.expression(p.value) for p in node.parameters))
         if isinstance(node, (tree.SimpleVariable, tree.MultiElementVariable)):
@@ -112,6 +119,17 @@ class FunctionBlock:
                 out("%s(%s)" % (self.name(node.name), ", ".join(arguments)))
             else:
                 raise NotImplementedError(type(node).__name__)
+
+
+def after_power_cycle(instance):
+    """A new instance of the same block that knows what the old one retained, and the blocks inside it too."""
+    new = type(instance)()
+    for name, value in vars(instance).items():
+        if name in instance.retained:
+            setattr(new, name, value)
+        elif hasattr(value, "retained"):
+            setattr(new, name, after_power_cycle(value))
+    return new
 
 
 def load(text, known_blocks=()):
