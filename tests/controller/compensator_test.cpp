@@ -204,7 +204,7 @@ TEST_CASE("outside the training domain the policy decides: warn, shrink, hold or
   }
 }
 
-TEST_CASE("stop ramps to zero and switches off; off does nothing", "[controller]") {
+TEST_CASE("stop ramps to zero and switches off, off does nothing", "[controller]") {
   Bench bench;
   CHECK(bench.step(20, 20, 20).word == 0);
   bench.start();

@@ -188,7 +188,7 @@ TEST_CASE("the zero is the median of samples that agree: noise is told apart fro
   CHECK(moving.z() == 0);
 }
 
-TEST_CASE("a first zero must look like the beginning of a training batch; a datum need not", "[controller]") {
+TEST_CASE("a first zero must look like the beginning of a training batch, a datum need not", "[controller]") {
   Machine machine(ZeroPolicy::first);
   machine.device.start();
   CHECK(machine.step(28, 500).state() == State::starting);

@@ -62,7 +62,7 @@ TEST_CASE("an effect asks for the schedule that shows it", "[effects]") {
   CHECK(block("initial-gradient", "head", "").kind == ScheduleKind::repeat);
 }
 
-TEST_CASE("an offset is what calibration moves too; a clock and a start are no places of the network", "[effects]") {
+TEST_CASE("an offset is what calibration moves too, a clock and a start are no places of the network", "[effects]") {
   const EffectLibrary library = standard_effects();
   for (const auto& effect : library.all()) {
     INFO(effect->name());

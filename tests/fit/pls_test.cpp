@@ -86,7 +86,7 @@ TEST_CASE("weights are orthonormal, scores uncorrelated, and rotations give the 
   }
 }
 
-TEST_CASE("explained variance is cumulative and is that of the residuals; squared VIP averages to one", "[fit]") {
+TEST_CASE("explained variance is cumulative and is that of the residuals, squared VIP averages to one", "[fit]") {
   const ThermalRows data(100, 7, 2, 3, 1);
   const LinearFit<> fit = fit_pls(data.temperatures, data.errors, fixed(4));
   const Matrix z = fit.channels.apply(data.temperatures);
