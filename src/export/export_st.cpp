@@ -269,7 +269,7 @@ class StWriter : StText<Scalar> {
 
   void nothing_to_tell() {
     for (const char* flag : {"outside", "clamped", "slewing"}) set(flag, "FALSE");
-    for (const char* number : {"unused", "first_unused", "first_fault"}) set(number, "0");
+    for (const char* counter : {"unused", "first_unused", "first_fault"}) set(counter, "0");
   }
 
   void request(const std::string& source) {
@@ -345,12 +345,21 @@ class StWriter : StText<Scalar> {
     set(of(i, "seen"), "TRUE");
     set_if(of(i, "still") + " < all_still", "all_still", of(i, "still"));
     line("END_IF;");
-    set("total", "total + " + of(i, "reading"));
+    set_vouched(i, "total", "total + ");
+  }
+
+  /// What a sensor tells about whether the others should have moved: of one that is lost, only what was trusted.
+  void set_vouched(std::size_t i, const std::string& variable, const std::string& plus) {
+    line("IF " + of(i, "lost") + " THEN");
+    set(variable, plus + of(i, "trusted_at"));
+    line("ELSE");
+    set(variable, plus + of(i, "reading"));
+    line("END_IF;");
   }
 
   void guard_by_others(std::size_t i) {
     const SensorLimits<Scalar>& limits = settings_.sensors[i];
-    set("others", "total - " + of(i, "reading"));
+    set_vouched(i, "others", "total - ");
     line("IF newcomer OR " + of(i, "still") + " = 0 THEN");
     set(of(i, "still"), "0");
     set(of(i, "others"), "others");
