@@ -1,8 +1,8 @@
-"""fault_matrix_test.py THERMFIT MODEL SOURCE [st] [linuxcnc]: what the compensator does at its edges, in every target.
+"""fault_matrix_test.py THERMFIT MODEL SOURCE [st]: what the compensator does at its edges, in every target.
 
-Each course of events has one right offset, state and fault, written down here from the model's numbers: error Z =
+With `st` Structured Text too, interpreted (needs blark). Each course of events has one right offset, state and fault, written down here from the model's numbers: error Z =
 1 + 2 T1 + T2 - T3 um of the rise in K, relative to the datum without the 1. Every target that can express the course
-must answer so. Prints the table of README.
+must answer so, and README's table must say so.
 """
 
 import json
@@ -157,12 +157,51 @@ def by_run(course):
     return [float(cells["offset_Z_um"]), int(cells["status"])]
 
 
+def by_structured_text():
+    """Through the function block, interpreted; a power cycle keeps what is RETAIN."""
+    import structured_text
+    text = open(export("st", "course.st")).read().split("FUNCTION_BLOCK course_test")[0]
+    block = structured_text.load(text)["course"]
+
+    def answer(course):
+        device, enable, datum, row = block(), False, False, ["20.0"] * 3
+
+        def call(periods, beat):
+            device(Enable=enable, Datum=datum, Periods=periods, Heartbeat=beat, **{
+                "Temperature_T%d" % (i + 1): float("nan" if r == "-" else r) for i, r in enumerate(row)})
+        for command in course.commands:
+            word, *rest = command.split()
+            if word in ("start", "resume", "stop"):
+                enable = word != "stop"
+            elif word == "datum":
+                datum = True
+                if not enable:
+                    call(1, 0)
+                    datum = False
+            elif word == "power":
+                device = block() if rest == ["none"] else structured_text.after_power_cycle(device)
+                enable = False
+                if rest == ["cut"]:
+                    device.s1_zero += 5
+                if rest == ["foreign"]:
+                    device.zero_model ^= 1
+            elif word == "step":
+                row = rest[2:]
+                call(int(rest[0]), int(rest[1]))
+                datum = False
+        return [float(device.offset_z_um), device.status]
+    return answer
+
+
 export("cpp", "course.hpp")
 export("c", "course.h")
 targets = {"C++": driver("cpp"), "C": driver("c", "-DCOURSE_IN_C"), "run": by_run}
+if "st" in sys.argv[4:]:
+    targets["ST"] = by_structured_text()
 
 wrong = 0
-print("| what happens | offset, um | state, fault | %s |" % " | ".join(targets))
+readme = open(os.path.join(source, "README.md")).read().splitlines()
+print("| what happens | offset | state, fault | %s |" % " | ".join(targets))
 print("|---|---|---|%s" % ("---|" * len(targets)))
 for course in courses:
     answers = {}
@@ -181,7 +220,10 @@ for course in courses:
         right = abs(offset - want) <= 1e-6 and state == course.state and fault == course.fault and status & 0x30 == course.bits
         wrong += not right
         cells.append("as it must" if right else "WRONG: %g, %s, %s, %08x" % (offset, state, fault, status))
-    print("| %s | %.2f | %s | %s |" % (course.name, want + 0., ", ".join(filter(None, [course.state, course.fault])),
-                                       " | ".join(cells)))
+    row = "| %s | %.2f um | %s |" % (course.name, want + 0., ", ".join(filter(None, [course.state, course.fault])))
+    print(row, " | ".join(cells), "|")
+    if row not in readme:
+        wrong += 1
+        print("README has no such row")
 print("%d courses, %d wrong" % (len(courses), wrong))
 sys.exit(wrong > 0)
