@@ -448,11 +448,18 @@ class StWriter : StText<Scalar> {
       }
       line("END_IF;");
     }
-    line("IF vouched THEN");
+    trust_if("vouched", i);
+    line("END_IF;");
+  }
+
+  void trust_if(const std::string& condition, std::size_t i) {
+    line("IF " + condition + " THEN");
+    if (sensors() > 1) set("change", of(i, "reading") + " - " + of(i, "trusted_at"));
+    for (std::size_t k = 0; k < sensors(); ++k)
+      if (k != i) set(of(k, "others"), of(k, "others") + " + change");
     set(of(i, "lost"), "FALSE");
     set(of(i, "returning"), "FALSE");
     set(of(i, "fault"), "0");
-    line("END_IF;");
     line("END_IF;");
   }
 
@@ -469,7 +476,7 @@ class StWriter : StText<Scalar> {
     set("complete", "TRUE");
     for (std::size_t i = 0; i < sensors(); ++i) {
       line("IF complete THEN");
-      std::string good = of(i, "fault") + " = 0";
+      std::string good = "(" + of(i, "fault") + " = 0 OR " + of(i, "returning") + ")";
       if (model_.rise && settings_.zero.policy == ZeroPolicy::first)
         good +=
             " AND (wanted_from <> 1 OR (" +
@@ -531,6 +538,7 @@ class StWriter : StText<Scalar> {
       set(of(i, "zero_known"), of(i, "counted"));
       set(of(i, "zero"), "0.0");
       set_if(of(i, "counted"), of(i, "zero"), numbered("rank", samples() / 2));
+      trust_if(of(i, "counted") + " AND " + of(i, "returning"), i);
     }
     set("zero_through", settings_.zero.through_zero ? "TRUE" : "wanted_from = 2");
     set("zero_from", "wanted_from");

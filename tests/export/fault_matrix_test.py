@@ -91,6 +91,8 @@ courses = [
     Course("a sensor lost", z(None, 2, 2, 0), "substituting", "not finite").probed().warm().step([None, 22, 22], 100),
     Course("lost, and back where it was", z(2, 2, 2), "tracking").probed().warm().step([None, 22, 22], 100).step(warm, 60),
     Course("stepped by 30 K", z(None, 2, 2, 0), "substituting", "disagrees").probed().warm().step([52, 22, 22], 400),
+    Course("stepped by 30 K, and a datum", 0, "tracking").probed().warm().step([52, 22, 22], 400).do("datum")
+    .step([52, 22, 22], 8),
     Course("two sensors lost", z(2, 2, 2), "holding", "not finite").probed().warm().step([None, None, 22], 100),
     Course("two sensors lost for long", 0, "fallback", "not finite").probed().warm().step([None, None, 22], 800),
     Course("one sensor frozen", z(None, 2, 2, 0), "substituting", "stuck").probed().warm()

@@ -83,15 +83,17 @@ class Datum {
   }
 
   /// Offers one more sample to the zero that was asked for. A sensor that is lost is waited for as long as
-  /// `patience_steps`, then left out where `substitutes` has one for it and no other is missing.
-  void collect(const Guard& guard, const Limits& limits, const ZeroRule& rule, const Row<bool, Sensors>& substitutes,
+  /// `patience_steps`, then left out where `substitutes` has one for it and no other is missing. One that has returned
+  /// need not agree with the others: with a new zero it begins anew, and is trusted.
+  void collect(Guard& guard, const Limits& limits, const ZeroRule& rule, const Row<bool, Sensors>& substitutes,
                std::uint32_t steps, std::uint32_t patience_steps) noexcept {
     if (wanted_ == ZeroSource::none) return;
     waited_steps_ = counted(waited_steps_, steps);
     std::uint32_t missing = 0;
     bool same = true;
     for (std::size_t i = 0; i < known_.size(); ++i) {
-      const bool good = guard.fault(i) == SensorFault::none && fits(guard.reading_degC(i), limits[i]);
+      const bool good =
+          (guard.fault(i) == SensorFault::none || guard.returning(i)) && fits(guard.reading_degC(i), limits[i]);
       const bool spared = guard.lost(i) && substitutes[i] && waited_steps_ > patience_steps;
       if (!good && !spared) {
         taken_ = 0;
@@ -105,7 +107,10 @@ class Datum {
     if (missing > 1) return;
     for (std::size_t i = 0; i < known_.size(); ++i) window_[i][taken_ % rule.samples] = guard.reading_degC(i);
     taken_ = taken_ + 1 < 2 * rule.samples ? taken_ + 1 : rule.samples;
-    if (taken_ >= rule.samples && agreed(limits, rule.samples)) take(rule);
+    if (taken_ < rule.samples || !agreed(limits, rule.samples)) return;
+    take(rule);
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      if (counted_[i] && guard.returning(i)) guard.trust(i);
   }
 
   /// Whether there is a zero.

@@ -83,10 +83,14 @@ class SensorGuard {
   /// Whether the sensor was lost and has read well for long enough: who knows the others says whether it agrees.
   bool returning(std::size_t sensor) const noexcept { return records_[sensor].returning; }
 
-  /// Trusts a returning sensor again.
+  /// Trusts a returning sensor again. What it moved by unseen is no sign that the others should have moved.
   void trust(std::size_t sensor) noexcept {
-    records_[sensor].lost = records_[sensor].returning = false;
-    records_[sensor].fault = SensorFault::none;
+    Record& record = records_[sensor];
+    const Scalar unseen = record.reading_degC - record.trusted_degC;
+    for (std::size_t i = 0; i < records_.size(); ++i)
+      if (i != sensor) records_[i].others_at_change += unseen;
+    record.lost = record.returning = false;
+    record.fault = SensorFault::none;
   }
 
   /// The last accepted reading; finite, 0 where there was none.
