@@ -1,5 +1,5 @@
-/// A thermometer of a measured lathe that steps in the middle of a day and stays there: the compensator must do no worse
-/// than if it had been lost.
+/// A thermometer of a measured lathe that steps in the middle of a day and stays there: the compensator must do no
+/// worse than if it had been lost.
 
 #include <cmath>
 #include <iostream>
