@@ -7,6 +7,7 @@ the offset, and never on its way faster than the slew limit. Needs to be root: h
 ordinary user then runs it.
 """
 
+import fcntl
 import json
 import math
 import os
@@ -22,6 +23,8 @@ thermfit, model = sys.argv[1:]
 if os.getuid() != 0:
     print("skipped: installing a component for LinuxCNC needs root")
     sys.exit(77)
+alone = open(os.path.join(tempfile.gettempdir(), "thermfit_linuxcnc_test.lock"), "w")
+fcntl.flock(alone, fcntl.LOCK_EX)  # a machine has one HAL
 work = tempfile.mkdtemp()
 NAME = "thermfittest"
 MODULE = "/usr/lib/linuxcnc/modules/%s.so" % NAME
