@@ -228,9 +228,11 @@ class StWriter : StText<Scalar> {
     line("END_IF;");
     line("IF running AND NOT Enable AND state <> 0 THEN");
     set("state", "6");
+    set("forget", "wanted_from = 2");
+    set("wanted_from", "0");
     line("END_IF;");
     line("IF Datum AND NOT datum_before THEN");
-    line("IF state = 0 AND NOT (Enable AND NOT running) THEN forget := TRUE; ELSE ask := TRUE; END_IF;");
+    line("IF (state = 0 OR state = 6) AND NOT (Enable AND NOT running) THEN forget := TRUE; ELSE ask := TRUE; END_IF;");
     line("END_IF;");
     set("datum_before", "Datum");
     line("IF forget THEN");

@@ -83,6 +83,8 @@ courses = [
     .warm().do("stop").step(warm, 100).do("start").step(warm, 100),
     Course("datum while switched off", 0, "no datum", only={"C", "C++", "ST", "LinuxCNC"}).probed().warm().do("stop")
     .step(warm, 100).do("datum", "start").step(warm, 100),
+    Course("datum, switched off before it was taken", 0, "no datum", only={"C", "C++", "ST", "LinuxCNC"}).probed().warm()
+    .do("datum").step(warm, 2).do("stop").step(warm, 100).do("start").step(warm, 100),
     Course("default of 0 in the first samples", z(0, 0, 0), "tracking").do("start", "datum").step([0, 0, 0], 3)
     .step(cold, 120),
     Course("one sensor off in the first sample", z(0, 0, 0), "tracking").do("start", "datum").step([20.9, 20, 20])

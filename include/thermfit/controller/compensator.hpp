@@ -81,15 +81,17 @@ class Compensator {
   }
 
   /// The operator probes the work offset now: the zero becomes the median of the samples that follow, once they agree,
-  /// and the offset 0 there; the intercept drops out. Until then the old zero counts. While off it forgets the zero.
+  /// and the offset 0 there; the intercept drops out. Until then the old zero counts. While off or stopping it forgets
+  /// the zero.
   void take_datum() noexcept {
-    if (state_ == CompensatorState::off) return datum_.forget();
+    if (state_ == CompensatorState::off || state_ == CompensatorState::stopping) return datum_.forget();
     datum_.request(ZeroSource::datum);
   }
 
   /// Ramps to zero and switches off.
   void stop() noexcept {
     raise(CompensatorEvent::stop);
+    datum_.abandon();
     status_.word = (status_.word & ~std::uint32_t(15)) | static_cast<std::uint32_t>(state_);
   }
 

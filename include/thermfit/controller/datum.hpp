@@ -82,6 +82,12 @@ class Datum {
     waited_steps_ = 0;
   }
 
+  /// Takes back what was asked for. A datum that was not taken leaves no zero: the old one is not true any more.
+  void abandon() noexcept {
+    if (wanted_ == ZeroSource::datum) forget();
+    wanted_ = ZeroSource::none;
+  }
+
   /// Offers one more sample to the zero that was asked for. A sensor that is lost is waited for as long as
   /// `patience_steps`, then left out where `substitutes` has one for it and no other is missing. One that has returned
   /// need not agree with the others: with a new zero it begins anew, and is trusted.
