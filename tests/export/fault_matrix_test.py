@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 
+import hal_component
+
 thermfit, model, source = sys.argv[1:4]
 here = os.path.dirname(os.path.abspath(__file__))
 work = tempfile.mkdtemp()
@@ -161,6 +163,72 @@ def by_run(course):
     return [float(cells["offset_Z_um"]), int(cells["status"])]
 
 
+COMPONENT_MAIN = """
+/* Reads a course from stdin, one power-up; at its end tells what a script would store, then offset and status. */
+static double number(const char *text) { return strcmp(text, "-") == 0 ? NAN : atof(text); }
+static void run(double periods) { component(&hal, (long)(periods * 1e9)); pin_applied_x = pin_offset_x, pin_applied_z = pin_offset_z; }
+
+int main(void) {
+  char word[20], t1[40], t2[40], t3[40];
+  unsigned beat;
+  double periods;
+  pin_machine_on = pin_homed = pin_eoffset_enabled = true;
+  pin_temperature_t1 = pin_temperature_t2 = pin_temperature_t3 = NAN;
+  run(1);
+  while (scanf("%19s", word) == 1) {
+    if (strcmp(word, "start") == 0) pin_enable = true;
+    if (strcmp(word, "stop") == 0) pin_enable = false;
+    if (strcmp(word, "datum") == 0) pin_datum = true, run(0), pin_datum = false;
+    if (strcmp(word, "resume") == 0) {
+      int through;
+      uint32_t digest;
+      if (scanf("%39s %39s %39s %d %u", t1, t2, t3, &through, &digest) != 5) return 1;
+      pin_set_zero_t1 = number(t1), pin_set_zero_t2 = number(t2), pin_set_zero_t3 = number(t3);
+      pin_set_zero_through = through, pin_set_zero_digest = digest;
+      pin_enable = pin_restore = true;
+    }
+    if (strcmp(word, "step") == 0) {
+      if (scanf("%lf %u %39s %39s %39s", &periods, &beat, t1, t2, t3) != 5) return 1;
+      pin_temperature_t1 = number(t1), pin_temperature_t2 = number(t2), pin_temperature_t3 = number(t3);
+      pin_heartbeat = beat;
+      run(periods);
+    }
+  }
+  printf("%.17g %.17g %.17g %d %u\\n%.9g %u\\n", pin_zero_t1, pin_zero_t2, pin_zero_t3, pin_zero_through, pin_zero_digest,
+         pin_offset_z * 1000, pin_status);
+  return 0;
+}
+"""
+
+
+def by_component():
+    """Through the HAL component compiled with a stand-in for HAL; a power cycle loads it anew, and a script has stored
+    what its zero pins showed."""
+    program = hal_component.build(open(export("linuxcnc", "course.comp")).read(), COMPONENT_MAIN, os.path.join(work, "comp"))
+
+    def answer(course):
+        part = []
+        for command in course.commands + ["end"]:
+            word, *rest = command.split()
+            if word in ("power", "end"):
+                stored, told = subprocess.run([program], input="\n".join(part) + "\n", text=True, check=True,
+                                              capture_output=True).stdout.splitlines()
+                zeros = stored.replace("nan", "-").split()
+                if rest == ["none"]:
+                    zeros = ["-", "-", "-", "0", "0"]
+                if rest == ["cut"]:
+                    zeros[0] = repr(float(zeros[0]) + 5)
+                if rest == ["foreign"]:
+                    zeros[4] = str(int(zeros[4]) ^ 1)
+                part = []
+            elif word == "resume":
+                part.append("resume " + " ".join(zeros))
+            else:
+                part.append(command)
+        return [float(told.split()[0]), int(told.split()[1])]
+    return answer
+
+
 def by_structured_text():
     """Through the function block, interpreted; a power cycle keeps what is RETAIN."""
     import structured_text
@@ -199,7 +267,7 @@ def by_structured_text():
 
 export("cpp", "course.hpp")
 export("c", "course.h")
-targets = {"C++": driver("cpp"), "C": driver("c", "-DCOURSE_IN_C"), "run": by_run}
+targets = {"C++": driver("cpp"), "C": driver("c", "-DCOURSE_IN_C"), "LinuxCNC": by_component(), "run": by_run}
 if "st" in sys.argv[4:]:
     targets["ST"] = by_structured_text()
 

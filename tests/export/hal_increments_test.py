@@ -8,35 +8,17 @@ been at rest for a while the applied offset must be the wanted one, and `ok` tru
 """
 
 import os
-import re
 import subprocess
 import sys
 import tempfile
+
+import hal_component
 
 thermfit, model = sys.argv[1:]
 work = tempfile.mkdtemp()
 COURSES = 200
 
-SHIM = """#include <stdbool.h>
-#include <math.h>
-#include <float.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-typedef volatile double hal_float_t;
-typedef volatile int32_t hal_s32_t;
-typedef volatile uint32_t hal_u32_t;
-typedef volatile bool hal_bit_t;
-struct __comp_state {
-%s};
-"""
-
 MAIN = """
-#define PIN(type, name) static hal_##type##_t pin_##name;
-%(pins)s
-static struct __comp_state hal = {%(addresses)s};
-
 static double scale_of_axis = 1e-4;
 static struct { double asked, applied, speed, shown; int32_t counts; bool on, free, clear, frozen; double limit; } motion;
 
@@ -154,17 +136,7 @@ int main(void) {
 
 text = subprocess.run([thermfit, "export", model, "--target", "linuxcnc", "--period", "0.001", "--slew", "200", "--domain", "ignore"],
                       capture_output=True, text=True, check=True).stdout
-pins = [(kind, name.replace("-", "_"), value) for kind, name, value in
-        re.findall(r"^pin \w+ (\w+) ([\w-]+)(?: = (\w+))? ", text, re.M)]
-body = text.split("\n;;\n", 1)[1].replace("FUNCTION(_) {", "static void component(struct __comp_state *__comp_inst, long period) {")
-body = re.sub(r"#define FUNCTION.*\n", "", body)
-program = SHIM % ("".join("  hal_%s_t *%s;\n" % (kind, name) for kind, name, _ in pins) + "  double counts_scale;\n") + body + MAIN % {
-    "pins": "\n".join("PIN(%s, %s)" % (kind, name) for kind, name, _ in pins), "courses": COURSES,
-    "addresses": ", ".join("&pin_" + name for _, name, _ in pins) + ", 1e-4"}
-path = os.path.join(work, "increments.c")
-open(path, "w").write(program)
-subprocess.run(["cc", "-std=gnu99", "-O2", "-Wall", "-Wextra", "-Wno-unused-function", "-Werror", path, "-o", path[:-2], "-lm"],
-               check=True)
-done = subprocess.run([path[:-2]], capture_output=True, text=True)
+program = hal_component.build(text, MAIN % {"courses": COURSES}, os.path.join(work, "increments"))
+done = subprocess.run([program], capture_output=True, text=True)
 print(done.stdout.strip())
 sys.exit(done.returncode)
