@@ -123,4 +123,10 @@ std::string Arguments::choice(std::string_view name, const std::vector<std::stri
                    did_you_mean(*text, allowed));
 }
 
+std::vector<std::pair<std::string, std::string>> Arguments::words() const {
+  std::vector<std::pair<std::string, std::string>> all = given_;
+  for (const std::string& word : positionals_) all.emplace_back("", word);
+  return all;
+}
+
 }  // namespace thermfit::cli

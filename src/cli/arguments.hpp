@@ -37,6 +37,8 @@ class Arguments {
   std::string choice(std::string_view name, const std::vector<std::string>& allowed, std::string fallback) const;
 
   const std::vector<std::string>& positionals() const { return positionals_; }
+  /// Everything that was given: the option and its value, an empty option for positionals.
+  std::vector<std::pair<std::string, std::string>> words() const;
 
  private:
   std::vector<std::pair<std::string, std::string>> given_;

@@ -1,6 +1,7 @@
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
+#include "options/output.hpp"
 #include "report/calibration_json.hpp"
 #include "report/calibration_text.hpp"
 #include "thermfit/calibration/start_tolerance.hpp"
@@ -54,7 +55,7 @@ Exit run(const Arguments& arguments, Console& console) {
   console.progress("calibrating …");
   const Calibration calibration = calibrate(seen, network, effects, how);
   console.progress("");
-  if (const auto path = arguments.value("--output")) save_machine(calibration.fit.network(), *path);
+  if (const auto path = output_path(arguments)) save_machine(calibration.fit.network(), *path);
   if (arguments.has("--json"))
     console.print(calibration_json(calibration, seen));
   else

@@ -2,6 +2,7 @@
 
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
+#include "options/output.hpp"
 #include "report/check_json.hpp"
 #include "report/check_text.hpp"
 #include "thermfit/findings/findings.hpp"
@@ -39,7 +40,7 @@ std::vector<Option> options() {
 }
 
 Exit run(const Arguments& arguments, Console& console) {
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
   CsvOptions reading = csv_options(arguments);
   if (!arguments.has("--missing")) reading.missing = MissingValues::keep;
   reading.increasing_time = false;

@@ -4,6 +4,7 @@
 
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
+#include "options/output.hpp"
 #include "report/diagnosis_json.hpp"
 #include "report/diagnosis_text.hpp"
 #include "thermfit/constants.hpp"
@@ -96,12 +97,12 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
   require_time(real);
   Diagnosis found = diagnose(machine, real, library, options);
   if (found.machine.empty()) found.machine = words[0];
-  if (const auto path = arguments.value("--write")) save_machine(found.with_effects, *path);
+  if (const auto path = output_path(arguments, "--write")) save_machine(found.with_effects, *path);
   return found;
 }
 
 Exit run_diagnose(const Arguments& arguments, Console& console) {
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
   const bool paired = arguments.has("--sim");
   if (paired && arguments.has("--write"))
     throw UsageError("--write needs a machine file: with --sim there is no machine to save");

@@ -5,6 +5,7 @@
 #include "export/reserved_words.hpp"
 #include "export/source_text.hpp"
 #include "options/compensation_options.hpp"
+#include "options/output.hpp"
 #include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {
@@ -65,7 +66,7 @@ Exit run_export(const Arguments& arguments, Console& console) {
   request.unit = offset_unit(arguments.choice("--unit", {"um", "mm", "0.1um"}, default_unit(target, request.control)));
   for (const Target& known : targets)
     if (known.name == target) console.print(known.write(request));
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
   return Exit::done;
 }
 

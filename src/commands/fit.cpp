@@ -1,9 +1,8 @@
-#include <filesystem>
-
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
+#include "options/output.hpp"
 #include "report/model_text.hpp"
 #include "thermfit/fit/jackknife.hpp"
 #include "thermfit/fit/train.hpp"
@@ -62,7 +61,6 @@ void print_jackknife(const Campaign& campaign, const TrainedModel& model, const 
 }
 
 Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan plan, Console& console) {
-  const auto folder = arguments.value("--output-folder");
   std::vector<std::pair<std::string, TrainedModel>> models;
   for (const Batch& batch : campaign) {
     plan.points = chosen_points({batch}, arguments, plan);
@@ -70,9 +68,12 @@ Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan
       throw UsageError("--each-batch with ridge needs --ridge-lambda: one batch cannot choose a penalty");
     models.emplace_back(batch.name, train({batch}, plan));
   }
-  if (folder) std::filesystem::create_directories(*folder);
-  for (const auto& [name, model] : models) {
-    if (folder) save_model(model, (std::filesystem::path(*folder) / (name + ".json")).string());
+  std::vector<std::string> names;
+  for (const auto& [name, model] : models) names.push_back(name + ".json");
+  const std::vector<std::string> paths = outputs_in_folder(arguments, names);
+  for (std::size_t b = 0; b < models.size(); ++b) {
+    const auto& [name, model] = models[b];
+    if (!paths.empty()) save_model(model, paths[b]);
     for (Index e = 0; e < model.model.errors(); ++e)
       console.print(wrap(
           name + ": " + model_equation(model, e) + "   (S " + fixed_text(model.residual_deviation_um(e), 2) + " um)",
@@ -103,7 +104,7 @@ Exit run_fit(const Arguments& arguments, Console& console) {
     print_model(model, console);
     print_jackknife(campaign, model, plan, console);
   }
-  if (const auto path = arguments.value("--output")) {
+  if (const auto path = output_path(arguments)) {
     save_model(model, *path);
     console.note("model written to " + *path);
   }

@@ -4,6 +4,7 @@
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
+#include "options/output.hpp"
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/json/model.hpp"
 #include "thermfit/number.hpp"
@@ -93,7 +94,7 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   note_first_readings(campaign, model.reference, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.line(to_document(model, all).dump(1));
   else if (arguments.has("--summary"))

@@ -2,6 +2,7 @@
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
+#include "options/output.hpp"
 #include "thermfit/io/json/node.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/select/correlation.hpp"
@@ -45,7 +46,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
   const std::vector<std::string>& names = campaign.front().temperatures.names;
   const std::vector<std::string>& errors = campaign.front().errors.names;
   const std::vector<Ranking> rankings = rank_all(campaign, arguments, count);
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json")) {
     Json document{{"format", "thermfit-rank/1"}, {"errors", errors}, {"batches", Json::array()}};
     for (const Ranking& ranking : rankings) {

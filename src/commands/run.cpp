@@ -5,6 +5,7 @@
 #include "commands/commands.hpp"
 #include "commands/live_compensation.hpp"
 #include "options/compensation_options.hpp"
+#include "options/output.hpp"
 #include "thermfit/io/json/model.hpp"
 
 namespace thermfit::cli {
@@ -32,6 +33,7 @@ const char* const details =
 
 Exit run_run(const Arguments& arguments, Console& console) {
   if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
+  if (const auto state = arguments.value("--state")) require_not_read(arguments, *state);
   const TrainedModel trained = load_model(arguments.positionals()[0]);
   LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"),
                         arguments.value_or("--state", ""));

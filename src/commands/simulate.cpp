@@ -1,11 +1,11 @@
 #include "thermfit/network/simulate.hpp"
 
-#include <filesystem>
 #include <set>
 
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
+#include "options/output.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/files/atomic_file.hpp"
@@ -81,14 +81,15 @@ Exit run(const Arguments& arguments, Console& console) {
   if (!left_out.empty())
     console.note("the machine has no sensor for " + name_list({left_out.begin(), left_out.end()}) + "; left out");
 
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
-  const auto folder = arguments.value("--output-folder");
-  if (folder) std::filesystem::create_directories(*folder);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
+  std::vector<std::string> names;
+  for (const Batch& batch : campaign) names.push_back(batch.name + ".csv");
+  const std::vector<std::string> paths = outputs_in_folder(arguments, names);
   for (std::size_t b = 0; b < campaign.size(); ++b) {
     const std::string text =
         write_csv(simulated_batch(network, campaign[b], simulations[b], arguments.has("--nodes")), decimals);
-    if (folder)
-      write_atomically((std::filesystem::path(*folder) / (campaign[b].name + ".csv")).string(), text);
+    if (!paths.empty())
+      write_atomically(paths[b], text);
     else
       console.print(campaign.size() == 1 ? text : with_batch_column(text, campaign[b].name, b == 0));
   }

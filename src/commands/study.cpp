@@ -3,6 +3,7 @@
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
+#include "options/output.hpp"
 #include "report/study_json.hpp"
 #include "report/study_text.hpp"
 #include "thermfit/io/json/campaign.hpp"
@@ -78,7 +79,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
   }
   find_card(campaign, report);
   report.study = study(observe(campaign, report.reference), options);
-  if (const auto path = arguments.value("--output")) console.write_to(*path);
+  if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.print(study_json(report));
   else
