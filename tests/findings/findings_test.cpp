@@ -49,6 +49,25 @@ const std::vector<Fault> faults{
     {FindingRule::spike, "T3", 30, 30, [](Batch& batch) { temperature(batch, 3)(30) += 2; }},
     {FindingRule::spike, "T8", 45, 45, [](Batch& batch) { temperature(batch, 8)(45) -= 1.5; }},
     {FindingRule::spike, "T9", 50, 52, [](Batch& batch) { temperature(batch, 9).segment(50, 3).array() += 3; }},
+    {FindingRule::spike, "T3", 30, 31, [](Batch& batch) { temperature(batch, 3).segment(30, 2).array() += 2; }},
+    {FindingRule::spike, "Z", 20, 21, [](Batch& batch) { batch.errors.values.col(0).segment(20, 2).array() -= 80; }},
+    {FindingRule::spike, "T4", 0, 0, [](Batch& batch) { temperature(batch, 4)(0) -= 12; }},
+    {FindingRule::spike, "T4", 1, 1, [](Batch& batch) { temperature(batch, 4)(1) += 4; }},
+    {FindingRule::spike, "T4", 77, 77, [](Batch& batch) { temperature(batch, 4)(77) -= 4; }},
+    {FindingRule::spike, "T4", 78, 78, [](Batch& batch) { temperature(batch, 4)(78) += 12; }},
+    {FindingRule::impossible, "T2", 0, 0, [](Batch& batch) { temperature(batch, 2)(0) = -127; }},
+    {FindingRule::impossible, "T2", 40, 41,
+     [](Batch& batch) { temperature(batch, 2).segment(40, 2).setConstant(9.9e37); }},
+    {FindingRule::impossible, "T2", 78, 78, [](Batch& batch) { temperature(batch, 2)(78) = -999.9; }},
+    {FindingRule::impossible, "Z", 12, 12, [](Batch& batch) { batch.errors.values(12, 0) = -1e12; }},
+    {FindingRule::spike, "Z", 40, 40,
+     [](Batch& batch) {  // an input that counts rows, one that dithers: neither excuses anything
+       batch.inputs = {{"row", "rpm"}, Matrix(batch.rows(), 2)};
+       batch.inputs.values.col(0).setLinSpaced(0, static_cast<double>(batch.rows() - 1));
+       for (Index row = 0; row < batch.rows(); ++row)
+         batch.inputs.values(row, 1) = 4000 + static_cast<double>(row * row % 5) - 2;
+       batch.errors.values(40, 0) += 60;
+     }},
     {FindingRule::spike, "Z", 40, 40, [](Batch& batch) { batch.errors.values(40, 0) += 60; }},
     {FindingRule::jump, "T5", 39, 40, [](Batch& batch) { temperature(batch, 5).tail(39).array() += 2; }},
     {FindingRule::jump, "Z", 39, 40, [](Batch& batch) { batch.errors.values.col(0).tail(39).array() -= 60; }},

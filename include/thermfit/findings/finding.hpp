@@ -19,13 +19,15 @@ enum class FindingRule {
   spike,      ///< a reading, or a few, far off those before and after
   jump,       ///< a lasting step between two rows that no input explains
   collinear,  ///< a temperature that others give to less than their resolution: a copy or a computed channel
-  unit        ///< values that hint at another unit
+  unit,       ///< values that hint at another unit
+  impossible  ///< a number that no temperature of a machine, or error of it, can have: what an instrument writes
+              ///< instead
 };
 
 /// The rule's name in tables and JSON. Does not allocate.
 inline std::string_view rule_name(FindingRule rule) {
   constexpr std::string_view names[] = {"time-gap", "time-back", "missing", "constant",  "stuck", "saturated",
-                                        "stale",    "spike",     "jump",    "collinear", "unit"};
+                                        "stale",    "spike",     "jump",    "collinear", "unit",  "impossible"};
   return names[static_cast<int>(rule)];
 }
 

@@ -8,6 +8,7 @@
 #include "thermfit/findings/clock_findings.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/frozen_findings.hpp"
+#include "thermfit/findings/possible_readings.hpp"
 #include "thermfit/findings/redundancy_findings.hpp"
 #include "thermfit/findings/transient_findings.hpp"
 #include "thermfit/findings/unit_findings.hpp"
@@ -17,6 +18,8 @@ namespace thermfit {
 /// What every rule allows. The numbers are choices: with them the clean campaigns of data/ raise no alarm and each
 /// fault that tests/findings puts into them is told once.
 struct FindingLimits {
+  PossibleReadings possible;       ///< numbers that are no readings
+  SwitchLimits switching;          ///< what excuses a jump
   ClockLimits clock;               ///< gaps in time
   FrozenLimits frozen;             ///< stuck and saturated channels
   StaleLimits stale;               ///< thermal errors read less often than written
@@ -32,19 +35,34 @@ struct FindingLimits {
 /// missing. Thresholds are multiples of each channel's own noise and resolution, so that they need no tuning and a
 /// coarse thermometer is not taken for a stuck one. Allocates.
 template <typename Scalar = double>
-std::vector<Finding> find_faults(const Batch& batch, const FindingLimits& limits = {}) {
+std::vector<Finding> find_faults(const Batch& as_recorded, const FindingLimits& limits = {}) {
+  Batch batch = as_recorded;  // without what no machine can have
   std::vector<Finding> findings = clock_findings(batch, limits.clock);
-  std::vector<Index> switching = switching_rows(batch.inputs);
+  std::vector<Index> switching = switching_rows(batch.inputs, limits.switching);
   for (const Finding& one : findings) switching.push_back(one.last_row);  // what happened in a gap is not known
   std::sort(switching.begin(), switching.end());
-  const MatrixX<Scalar> smooth = detail::despiked<Scalar>(batch.temperatures.values);
-  const auto check = [&](const Channels& channels, bool is_error) {
+  for (const bool is_error : {false, true}) {
+    Channels& channels = is_error ? batch.errors : batch.temperatures;
+    for (Index c = 0; c < channels.count(); ++c)
+      for (Finding& one : impossible_readings(channels.values.col(c), is_error,
+                                              channels.names[static_cast<std::size_t>(c)], limits.possible))
+        findings.push_back(std::move(one));
+  }
+  MatrixX<Scalar> smooth = detail::despiked<Scalar>(batch.temperatures.values);
+  for (Index c = 0; c < batch.temperatures.count(); ++c) {  // at the ends no median takes a spike out
+    const Series series(batch.temperatures.values.col(c));
+    if (series.size() < limits.judged_rows) continue;
+    for (const Finding& one : transient_findings(series, series_scale(series), switching, "", "K", limits.transient))
+      if (one.rule == FindingRule::spike && (one.first_row < 2 || one.last_row + 2 >= batch.rows()))
+        smooth.col(c).segment(one.first_row, one.last_row - one.first_row + 1).setConstant(std::nan(""));
+  }
+  const auto check = [&](const Channels& channels, const Channels& recorded, bool is_error) {
     for (Index c = 0; c < channels.count(); ++c) {
       const Series series(channels.values.col(c));
       const std::string& name = channels.names[static_cast<std::size_t>(c)];
       const std::string unit = is_error ? "um" : "K";
       const SeriesScale scale = series_scale(series);
-      if (const auto lost = missing_finding(channels.values.col(c), name)) findings.push_back(*lost);
+      if (const auto lost = missing_finding(recorded.values.col(c), name)) findings.push_back(*lost);
       if (series.size() < 2) continue;
       if (scale.range() == 0) {
         if (series.size() >= limits.constant_rows)
@@ -66,8 +84,8 @@ std::vector<Finding> find_faults(const Batch& batch, const FindingLimits& limits
           findings.push_back(std::move(one));
     }
   };
-  check(batch.temperatures, false);
-  check(batch.errors, true);
+  check(batch.temperatures, as_recorded.temperatures, false);
+  check(batch.errors, as_recorded.errors, true);
   for (Finding& one : redundancy_findings<Scalar>(batch, limits.redundancy)) findings.push_back(std::move(one));
   for (Finding& one : unit_findings(batch, limits.units)) findings.push_back(std::move(one));
   return findings;

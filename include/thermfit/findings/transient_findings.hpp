@@ -22,29 +22,50 @@ struct TransientLimits {
   double jump_noise = 12;      ///< a jump exceeds the local trend by so many standard deviations …
   double jump_steps = 6;       ///< … or steps of the resolution, where that is more
   double jump_over_steps = 4;  ///< … and is so many times as large as each of the steps around it
+  double edge_over_steps = 8;  ///< the first or last reading is off when the step to it is so many times as large
   std::size_t back_within_rows = 5;  ///< a jump that is taken back within so many rows is a spike
   double back_share = 0.3;           ///< taken back: but for this share
   Index settling_rows = 2;           ///< so many rows after an input has switched may jump
 };
 
-/// Rows in which a known input has another value than in the row before, increasing. Allocates.
-inline std::vector<Index> switching_rows(const Channels& inputs) {
+/// When a change of an input is a switch that may make readings jump.
+struct SwitchLimits {
+  double least_share = 0.05;    ///< of the input's range: less is a measured input that dithers, or a counter
+  double busiest_share = 0.25;  ///< of the rows: an input that changes more often is not switched
+};
+
+/// Rows in which a known input is switched to another level, increasing. Allocates.
+inline std::vector<Index> switching_rows(const Channels& inputs, const SwitchLimits& limits = {}) {
   std::vector<Index> rows;
-  if (inputs.count() == 0) return rows;
-  for (Index row = 1; row < inputs.values.rows(); ++row)
-    if ((inputs.values.row(row).array() != inputs.values.row(row - 1).array()).any()) rows.push_back(row);
+  for (Index c = 0; c < inputs.count(); ++c) {
+    const Series series(inputs.values.col(c));
+    const SeriesScale scale = series_scale(series);
+    std::vector<Index> own;
+    for (std::size_t i = 1; i < series.size(); ++i)
+      if (std::abs(series.values[i] - series.values[i - 1]) > limits.least_share * scale.range())
+        own.push_back(series.rows[i]);
+    if (static_cast<double>(own.size()) <= limits.busiest_share * static_cast<double>(inputs.values.rows()))
+      rows.insert(rows.end(), own.begin(), own.end());
+  }
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   return rows;
 }
 
 namespace detail {
 
 /// Steps from one reading to the next that are no part of a smooth course: beyond the limit away from the steps around
-/// and so many times as large as each of them. Step i leads to reading i.
-inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, double limit, double over_steps) {
+/// and so many times as large as each of them, but for one that takes it back. Step i leads to reading i.
+inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, const TransientLimits& limits,
+                                             double limit) {
+  const double over_steps = limits.jump_over_steps;
   std::vector<std::size_t> found;
   const auto step = [&](std::size_t i) { return values[i] - values[i - 1]; };
   for (std::size_t i = 3; i + 2 < values.size(); ++i) {
     std::array<double, 4> around{step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
+    for (const std::size_t outer : {std::size_t{0}, std::size_t{3}})  // a spike of two rows: the step back is no trend
+      if (around[outer] * step(i) < 0 && std::abs(around[outer] + step(i)) < limits.back_share * std::abs(step(i)))
+        around[outer] = around[outer == 0 ? 1 : 2];
     std::sort(around.begin(), around.end());
     const double trend = (around[1] + around[2]) / 2, largest = std::max(std::abs(around[0]), std::abs(around[3]));
     if (std::abs(step(i) - trend) > limit && std::abs(step(i)) > over_steps * largest) found.push_back(i);
@@ -58,8 +79,9 @@ inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, 
 ///
 /// A spike leaves the range of the two readings before and the two after, and its neighbours' second differences have
 /// the opposite sign: a corner of the true course has not. A jump leaves the local trend and is larger than the steps
-/// around it; a jump that is soon taken back is a spike too. Rows just after an input has switched, and the start of
-/// the batch, may jump. `unit` is that of the series. Allocates.
+/// around it; a jump that is soon taken back is a spike too. Rows just after an input has switched may jump; nothing
+/// excuses a spike. The first and last readings are off when they leave the others by a step far larger than the next.
+/// `unit` is that of the series. Allocates.
 inline std::vector<Finding> transient_findings(const Series& series, const SeriesScale& scale,
                                                const std::vector<Index>& switching, const std::string& name,
                                                const std::string& unit, const TransientLimits& limits = {}) {
@@ -67,24 +89,27 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
   const double spike_limit = std::max(limits.spike_noise * scale.noise, limits.spike_steps * scale.resolution);
   const double jump_limit = std::max(limits.jump_noise * scale.noise, limits.jump_steps * scale.resolution);
   std::vector<Finding> findings;
+  const auto after_gap = [&](std::size_t i) { return series.rows[i] > series.rows[i - 1] + 1; };
   const auto explained = [&](std::size_t i) {
     const Index row = series.rows[i];
     const auto at = std::upper_bound(switching.begin(), switching.end(), row);
-    return row > series.rows[i - 1] + 1 || (at != switching.begin() && row <= *std::prev(at) + limits.settling_rows);
+    return after_gap(i) || (at != switching.begin() && row <= *std::prev(at) + limits.settling_rows);
   };
   const auto bend = [&](std::size_t i) { return x[i] - (x[i - 1] + x[i + 1]) / 2; };
   std::vector<bool> spiked(x.size(), false);
-  for (std::size_t i = 2; i + 2 < x.size(); ++i) {
-    const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[i + 1], x[i + 2]});
+  const std::size_t last = x.size() - 1;
+  for (std::size_t i = 1; x.size() > 4 && i < last; ++i) {
+    const auto [low, high] =
+        std::minmax({x[i < 2 ? i + 2 : i - 2], x[i - 1], x[i + 1], x[i + 2 > last ? i - 2 : i + 2]});
     const double beyond = std::max(x[i] - high, low - x[i]);
-    if (beyond <= spike_limit || explained(i)) continue;
+    if (beyond <= spike_limit || after_gap(i)) continue;
     const double sign = x[i] > high ? 1 : -1, size = sign * bend(i), back = limits.corner_share * size;
-    if (-sign * bend(i - 1) < back || -sign * bend(i + 1) < back) continue;
+    if ((i > 1 && -sign * bend(i - 1) < back) || (i + 1 < last && -sign * bend(i + 1) < back)) continue;
     spiked[i] = true;
     findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[i], beyond, spike_limit, unit,
                         "off the readings around it: contact, interference?"});
   }
-  const std::vector<std::size_t> steps = detail::abrupt_steps(x, jump_limit, limits.jump_over_steps);
+  const std::vector<std::size_t> steps = detail::abrupt_steps(x, limits, jump_limit);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const std::size_t i = steps[k];
     const double size = x[i] - x[i - 1];
@@ -102,6 +127,18 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
       findings.push_back({FindingRule::jump, name, series.rows[i - 1], series.rows[i], std::abs(size), jump_limit, unit,
                           "a lasting step that no input explains: sensor moved, probe zeroed?"});
   }
+  const auto edge = [&](std::size_t i, auto step) {  // step(k): from the reading at the edge inwards
+    double largest = 0;
+    for (int k = 2; k <= 8; ++k) largest = std::max(largest, std::abs(step(k)));
+    if (std::abs(step(1)) > std::max(jump_limit, limits.edge_over_steps * largest))
+      findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[i], std::abs(step(1)), jump_limit, unit,
+                          i == 0 ? "the first reading is off those that follow: a default, a contact?"
+                                 : "the last reading is off those before: cut off, a contact?"});
+  };
+  if (x.size() > 9 && !spiked[1] && !explained(1))
+    edge(0, [&](int k) { return x[std::size_t(k)] - x[std::size_t(k) - 1]; });
+  if (x.size() > 9 && !spiked[last - 1] && !explained(last))
+    edge(last, [&](int k) { return x[last - std::size_t(k)] - x[last - std::size_t(k) + 1]; });
   std::sort(findings.begin(), findings.end(),
             [](const Finding& a, const Finding& b) { return a.first_row < b.first_row; });
   return findings;
