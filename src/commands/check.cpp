@@ -24,6 +24,8 @@ const char* const details =
   jump        a lasting step that no known input explains
   collinear   a point that others give more closely than rounding allows
   unit        values that make sense in another unit only
+  impossible  a number that no machine can have: what an instrument writes without a reading
+  copy        the numbers of another batch once more
 
 Limits are multiples of each channel's own noise and resolution. Rows count from 1 at the first row of the batch. What cannot be read at all is an error, told with file:line:column.
 Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";
@@ -47,9 +49,12 @@ Exit run(const Arguments& arguments, Console& console) {
   std::vector<CheckedBatch> checked;
   Campaign campaign = read_files(reading, console, arguments.positionals()).batches;
   note_first_readings(campaign, TemperatureReference::rise, console);
-  for (Batch& batch : campaign) {
-    std::vector<Finding> findings = find_faults(batch);
-    checked.push_back({std::move(batch), std::move(findings)});
+  for (std::size_t b = 0; b < campaign.size(); ++b) {
+    std::vector<Finding> findings = find_faults(campaign[b]);
+    if (const Batch* original = copied_from(campaign, b))
+      findings.push_back({FindingRule::copy, "all", 0, campaign[b].rows() - 1, 0, 0, "",
+                          "holds the numbers of " + original->name + " once more"});
+    checked.push_back({campaign[b], std::move(findings)});
   }
   console.print(arguments.has("--json") ? check_json(checked) : check_text(checked));
   const bool clean = std::all_of(checked.begin(), checked.end(), [](const auto& one) { return one.findings.empty(); });

@@ -1,5 +1,7 @@
 #include "thermfit/model/predict.hpp"
 
+#include <algorithm>
+
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
@@ -38,7 +40,7 @@ void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Co
   std::string header = timed ? "batch,row,time_min" : "batch,row";
   for (const std::string& error : model.errors) header += ',' + csv_field(error + "_predicted");
   for (const std::string& error : model.errors) header += measured ? ',' + csv_field(error + "_residual") : "";
-  console.line(header + ",T2,SPE,domain");
+  console.line(header + ",hotelling_T2,SPE,domain");
   for (const auto& [batch, p] : all)
     for (Index i = 0; i < p.errors.rows(); ++i) {
       std::string row = csv_field(batch->name) + ',' + std::to_string(i + 1);
@@ -85,6 +87,8 @@ Json to_document(const TrainedModel& model, const std::vector<Predicted>& all) {
 Exit run_predict(const Arguments& arguments, Console& console) {
   const auto& words = arguments.positionals();
   if (words.size() < 2) throw UsageError("predict takes a model file and at least one batch");
+  if (!begins_as_json(words[0]) && std::any_of(words.begin() + 1, words.end(), begins_as_json))
+    throw UsageError("'" + words[0] + "' is no model file; MODEL.json comes first, then the batches");
   const TrainedModel model = load_model(words[0]);
   CsvOptions options = csv_options(arguments);
   if (options.temperatures.empty()) options.temperatures = model.temperatures;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <map>
 
+#include "options/file_identity.hpp"
 #include "thermfit/findings/transient_findings.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/io/units.hpp"
@@ -159,15 +162,58 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths) {
   return files;
 }
 
+namespace {
+
+/// Throws Error on what is not a batch by its first character, and on one file under two names.
+void require_batches(const std::vector<std::string>& files) {
+  std::map<std::pair<dev_t, ino_t>, std::string> seen;
+  for (const std::string& file : files) {
+    const auto identity = file_identity(file);
+    if (!identity) continue;
+    const auto [first, fresh] = seen.emplace(*identity, file);
+    if (!fresh && first->second != file)
+      throw Error(file, "is the same file as " + first->second, "each file once", "leave one of them out");
+    if (begins_as_json(file))
+      throw Error(file, "is a JSON document, as models and machines are", "batches: tables of text, .csv or .csv.gz",
+                  "where a command takes a model or a machine, it comes first");
+  }
+}
+
+}  // namespace
+
+bool begins_as_json(const std::string& path) {
+  std::ifstream file(path);
+  char first = 0;
+  return file >> first && first == '{';
+}
+
+void note_copies(const Campaign& campaign, const Console& console) {
+  for (std::size_t b = 0; b < campaign.size(); ++b)
+    if (const Batch* original = copied_from(campaign, b))
+      console.note(campaign[b].source + ": holds the numbers of " + original->name +
+                   " once more: what is left out for a figure is then not left out; leave one of them out");
+}
+
+const Batch* copied_from(const Campaign& campaign, std::size_t b) {
+  if (campaign[b].rows() < 10) return nullptr;  // a few rows may well agree
+  for (std::size_t earlier = 0; earlier < b; ++earlier)
+    if (!campaign[b].digest.empty() && campaign[earlier].digest == campaign[b].digest) return &campaign[earlier];
+  return nullptr;
+}
+
 CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths) {
   if (paths.empty()) throw UsageError("no batch is named; give files, folders, quoted globs, or - for stdin");
-  CsvReading reading = thermfit::read_campaign(find_files(paths), options);
+  const std::vector<std::string> files = find_files(paths);
+  require_batches(files);
+  CsvReading reading = thermfit::read_campaign(files, options);
   for (const std::string& note : reading.notes(options)) console.note(note);
   return reading;
 }
 
 Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths) {
-  return read_files(csv_options(arguments), console, paths).batches;
+  Campaign campaign = read_files(csv_options(arguments), console, paths).batches;
+  note_copies(campaign, console);
+  return campaign;
 }
 
 void note_first_readings(const Campaign& campaign, TemperatureReference reference, const Console& console) {

@@ -30,6 +30,15 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths);
 CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths);
 Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths);
 
+/// Whether a file begins as a JSON document does.
+bool begins_as_json(const std::string& path);
+
+/// The batch before the `b`th that holds the same numbers, ten rows or more, or nullptr.
+const Batch* copied_from(const Campaign& campaign, std::size_t b);
+
+/// Says which batches hold the numbers of another.
+void note_copies(const Campaign& campaign, const Console& console);
+
 /// Where temperatures count from the first row, says which first readings are off those that follow: they move every
 /// row of their batch.
 void note_first_readings(const Campaign& campaign, TemperatureReference reference, const Console& console);

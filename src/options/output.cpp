@@ -1,11 +1,10 @@
 #include "options/output.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <filesystem>
 
 #include "options/campaign_options.hpp"
+#include "options/file_identity.hpp"
 #include "thermfit/error.hpp"
 
 namespace thermfit::cli {
@@ -13,13 +12,6 @@ namespace {
 
 /// Options whose values are written, or read and written on purpose.
 const char* const written[] = {"--output", "--output-folder", "--write", "--state"};
-
-/// The file a path leads to, whatever it is called there; only files that can be replaced have one.
-std::optional<std::pair<dev_t, ino_t>> identity(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-  return std::make_pair(status.st_dev, status.st_ino);
-}
 
 /// The files that a word of the command line stands for, if it stands for any.
 std::vector<std::string> files_of(const std::string& word) {
@@ -33,12 +25,12 @@ std::vector<std::string> files_of(const std::string& word) {
 }  // namespace
 
 void require_not_read(const Arguments& arguments, const std::string& path) {
-  const auto target = identity(path);
+  const auto target = file_identity(path);
   if (!target) return;
   for (const auto& [option, word] : arguments.words()) {
     if (std::find(std::begin(written), std::end(written), option) != std::end(written)) continue;
     for (const std::string& file : files_of(word))
-      if (identity(file) == target)
+      if (file_identity(file) == target)
         throw Error(path, "is " + (file == path ? "read by this command" : "the file " + file + ", which this reads"),
                     "a file that is not an input", "write to another one: what was measured is never replaced");
   }

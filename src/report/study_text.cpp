@@ -78,8 +78,12 @@ class ErrorSection {
       if (const Robustness<>* theirs = figures(*base)) {
         const double accuracy = 1 - ours->per_model.S_mean / theirs->per_model.S_mean;
         const double robust = 1 - ours->per_model.S_std / theirs->per_model.S_std;
-        text += ": " + percent(std::abs(accuracy)) + (accuracy < 0 ? " less" : " more") + " accurate and " +
-                percent(std::abs(robust)) + (robust < 0 ? " less" : " more") + " robust than " + method_title(*base);
+        const auto compared = [](double share, const char* word) {
+          return percent(std::abs(share)) + (share < 0 ? " less " : " more ") + word;
+        };
+        if (std::isfinite(accuracy))  // where the other leaves nothing there is nothing to compare with
+          text += ": " + compared(accuracy, "accurate") +
+                  (std::isfinite(robust) ? " and " + compared(robust, "robust") : "") + " than " + method_title(*base);
       }
     console_.line();
     console_.print(wrap(text + ".", 80, 0));

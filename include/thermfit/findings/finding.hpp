@@ -9,25 +9,26 @@ namespace thermfit {
 
 /// What can be wrong with a measured batch before anything is fitted to it.
 enum class FindingRule {
-  time_gap,   ///< samples are missing: a time step far longer than the usual one
-  time_back,  ///< time repeats or goes back
-  missing,    ///< cells without a value
-  constant,   ///< a temperature or thermal error that never moves
-  stuck,      ///< one value for many rows, while other channels say that it should have moved
-  saturated,  ///< the same, at the largest or smallest value of a thermal error
-  stale,      ///< a thermal error that is read less often than it is written down
-  spike,      ///< a reading, or a few, far off those before and after
-  jump,       ///< a lasting step between two rows that no input explains
-  collinear,  ///< a temperature that others give to less than their resolution: a copy or a computed channel
-  unit,       ///< values that hint at another unit
-  impossible  ///< a number that no temperature of a machine, or error of it, can have: what an instrument writes
-              ///< instead
+  time_gap,    ///< samples are missing: a time step far longer than the usual one
+  time_back,   ///< time repeats or goes back
+  missing,     ///< cells without a value
+  constant,    ///< a temperature or thermal error that never moves
+  stuck,       ///< one value for many rows, while other channels say that it should have moved
+  saturated,   ///< the same, at the largest or smallest value of a thermal error
+  stale,       ///< a thermal error that is read less often than it is written down
+  spike,       ///< a reading, or a few, far off those before and after
+  jump,        ///< a lasting step between two rows that no input explains
+  collinear,   ///< a temperature that others give to less than their resolution: a copy or a computed channel
+  unit,        ///< values that hint at another unit
+  impossible,  ///< a number that no temperature of a machine, or error of it, can have: written without a reading
+  copy         ///< a batch that holds the numbers of another
 };
 
 /// The rule's name in tables and JSON. Does not allocate.
 inline std::string_view rule_name(FindingRule rule) {
-  constexpr std::string_view names[] = {"time-gap", "time-back", "missing", "constant",  "stuck", "saturated",
-                                        "stale",    "spike",     "jump",    "collinear", "unit",  "impossible"};
+  constexpr std::string_view names[] = {"time-gap",  "time-back",  "missing", "constant", "stuck",
+                                        "saturated", "stale",      "spike",   "jump",     "collinear",
+                                        "unit",      "impossible", "copy"};
   return names[static_cast<int>(rule)];
 }
 
