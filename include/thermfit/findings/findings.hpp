@@ -8,7 +8,7 @@
 #include "thermfit/findings/clock_findings.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/frozen_findings.hpp"
-#include "thermfit/findings/possible_readings.hpp"
+#include "thermfit/findings/impossible_findings.hpp"
 #include "thermfit/findings/redundancy_findings.hpp"
 #include "thermfit/findings/transient_findings.hpp"
 #include "thermfit/findings/unit_findings.hpp"
@@ -44,7 +44,7 @@ std::vector<Finding> find_faults(const Batch& as_recorded, const FindingLimits& 
   for (const bool is_error : {false, true}) {
     Channels& channels = is_error ? batch.errors : batch.temperatures;
     for (Index c = 0; c < channels.count(); ++c)
-      for (Finding& one : impossible_readings(channels.values.col(c), is_error,
+      for (Finding& one : impossible_findings(channels.values.col(c), is_error,
                                               channels.names[static_cast<std::size_t>(c)], limits.possible))
         findings.push_back(std::move(one));
   }

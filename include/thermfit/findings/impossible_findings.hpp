@@ -18,7 +18,7 @@ struct PossibleReadings {
 
 /// Numbers of a channel that no machine can have, rows in a row together; they are set to NaN in `values`, so that
 /// nothing else is judged by them. Allocates.
-inline std::vector<Finding> impossible_readings(Eigen::Ref<Vector> values, bool is_error, const std::string& name,
+inline std::vector<Finding> impossible_findings(Eigen::Ref<Vector> values, bool is_error, const std::string& name,
                                                 const PossibleReadings& limits = {}) {
   std::vector<Finding> findings;
   for (Index row = 0; row < values.size(); ++row) {
