@@ -415,7 +415,7 @@ class StWriter : StText<Scalar> {
     line("IF away > 0 THEN");
     set("together", "FALSE");
     if (settings_.domain_policy != DomainPolicy::ignore) {
-      line(std::string("IF all_read AND referenced") + (model_.rise ? " AND zero_from <> 0" : "") + " THEN");
+      line("IF all_read AND referenced THEN");
       domain_values();
       share_inside();
       set("together", "share >= 1.0");

@@ -7,6 +7,7 @@
 #error "thermfit: the controller needs comparisons that NaN fails; build it without -ffast-math / -ffinite-math-only"
 #endif
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -34,6 +35,15 @@ constexpr Scalar magnitude(Scalar value) noexcept {
 constexpr std::uint32_t counted(std::uint32_t count, std::uint32_t more) noexcept {
   const std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
   return count < most - more ? count + more : most;
+}
+
+/// Where fnv1a() begins.
+constexpr std::uint32_t fnv1a_begin = 2166136261u;
+
+/// FNV-1a, 32 bits: the digest of what came before and of `size` more bytes.
+inline std::uint32_t fnv1a(std::uint32_t before, const void* bytes, std::size_t size) noexcept {
+  for (std::size_t k = 0; k < size; ++k) before = (before ^ static_cast<const unsigned char*>(bytes)[k]) * 16777619u;
+  return before;
 }
 
 }  // namespace thermfit

@@ -160,15 +160,11 @@ class Compensator {
   bool relative() const noexcept { return model_.rise || datum_.known(); }
   bool has_reference(std::size_t sensor) const noexcept { return !relative() || datum_.known(sensor); }
 
-  /// The readings as the equation takes them: relative to the zero, or absolute.
-  void take_values() noexcept {
+  /// The readings, relative to the zero or absolute: the equation takes them as the demand is, the training domain as
+  /// the model was fitted.
+  void take_values(bool from_zero) noexcept {
     for (std::size_t i = 0; i < values_.size(); ++i)
-      values_[i] = guard_.reading_degC(i) - (relative() ? datum_.zero_degC()[i] : Scalar(0));
-  }
-  /// The readings as the training domain takes them: relative only where the model is.
-  void take_domain_values() noexcept {
-    for (std::size_t i = 0; i < values_.size(); ++i)
-      values_[i] = guard_.reading_degC(i) - (model_.rise ? datum_.zero_degC()[i] : Scalar(0));
+      values_[i] = guard_.reading_degC(i) - (from_zero ? datum_.zero_degC()[i] : Scalar(0));
   }
 
   Scalar predicted(const typename Model::Equation& equation, std::size_t error) const noexcept {
@@ -194,7 +190,7 @@ class Compensator {
   }
 
   bool agrees_with_substitute(std::size_t sensor) noexcept {
-    take_values();
+    take_values(relative());
     for (std::size_t j = 0; j < demand_um_.size(); ++j) {
       const Scalar difference = predicted(model_.equation, j) - predicted(model_.substitutes[sensor], j);
       if (!(magnitude(difference) <= model_.agreement_um[sensor][j])) return false;
@@ -206,8 +202,8 @@ class Compensator {
   bool agree_together() noexcept {
     if (settings_.domain_policy == DomainPolicy::ignore) return false;
     for (std::size_t i = 0; i < values_.size(); ++i)
-      if (!has_reference(i) || (model_.rise && !datum_.known())) return false;
-    take_domain_values();
+      if (!has_reference(i)) return false;
+    take_values(model_.rise);
     return domain_.share_inside(model_.domain, values_) >= 1;
   }
 
@@ -225,7 +221,7 @@ class Compensator {
                                                                       : CompensatorEvent::no_zero;
     if (!usable(unused)) return CompensatorEvent::no_demand;
     const bool whole = unused == 0;
-    take_values();
+    take_values(relative());
     const auto& equation = whole ? model_.equation : model_.substitutes[first_unused_];
     for (std::size_t j = 0; j < demand_um_.size(); ++j) {
       demand_um_[j] = predicted(equation, j);
@@ -263,7 +259,7 @@ class Compensator {
   /// it must not be followed.
   bool apply_domain(bool whole) noexcept {
     if (settings_.domain_policy == DomainPolicy::ignore) return true;
-    take_domain_values();
+    take_values(model_.rise);
     if (!whole) domain_.fill_in(model_.domain, values_, first_unused_);
     const Scalar share = domain_.share_inside(model_.domain, values_);
     if (share >= 1) return true;

@@ -51,10 +51,8 @@ void fill_columns(Row<Row<Scalar, Size>, Rows>& rows, const Matrix& columns, con
 
 /// A number for each model: FNV-1a, 32 bits, over names, reference and coefficients; never 0.
 inline std::uint32_t identity_of(const TrainedModel& trained) {
-  std::uint32_t result = 2166136261u;
-  const auto add = [&](const void* bytes, std::size_t size) {
-    for (std::size_t k = 0; k < size; ++k) result = (result ^ static_cast<const unsigned char*>(bytes)[k]) * 16777619u;
-  };
+  std::uint32_t result = fnv1a_begin;
+  const auto add = [&](const void* bytes, std::size_t size) { result = fnv1a(result, bytes, size); };
   for (const std::string& name : trained.temperatures) add(name.c_str(), name.size() + 1);
   const Index values = trained.model.coefficients.size(), errors = trained.model.intercept.size();
   add(trained.model.coefficients.data(), static_cast<std::size_t>(values) * sizeof(double));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstring>
 #include <limits>
 
 #include "thermfit/controller/arithmetic.hpp"
@@ -33,17 +32,13 @@ struct RetainedDatum {
   }
 
  private:
-  template <class Value>
-  static std::uint32_t digested(std::uint32_t before, Value value) noexcept {
-    unsigned char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);
-    for (const unsigned char byte : bytes) before = (before ^ byte) * 16777619u;
-    return before;
-  }
-
   std::uint32_t digest_of_all() const noexcept {
-    std::uint32_t result = digested(digested(digested(2166136261u, mark), model), through_zero);
-    for (const Scalar zero : zero_degC) result = digested(result, is_finite(zero) ? zero : Scalar(-1e9));
+    std::uint32_t result = fnv1a_begin;
+    for (const std::uint32_t word : {mark, model, through_zero}) result = fnv1a(result, &word, sizeof word);
+    for (const Scalar zero : zero_degC) {
+      const Scalar known = is_finite(zero) ? zero : Scalar(-1e9);
+      result = fnv1a(result, &known, sizeof known);
+    }
     return result;
   }
 };

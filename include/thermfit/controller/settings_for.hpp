@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "thermfit/controller/compensator_settings.hpp"
@@ -58,7 +57,7 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
                    std::min(most_zero_samples, std::max(3u, detail::steps_in(wishes.zero_window_s, wishes.period_s))),
                    wishes.through_zero};
   settings.stale_steps = std::max(1u, detail::steps_in(wishes.stale_s, wishes.period_s));
-  double all_rest_min = std::numeric_limits<double>::max();  // no longer than the one that moves most
+  std::uint32_t all_frozen_steps = 0;  // together they rest no longer than the liveliest
   detail::fit_size<SensorLimits<Scalar>, Sensors>(settings.sensors, trained.model.sensors(), "sensors");
   for (Index i = 0; i < trained.model.sensors(); ++i) {
     SensorLimits<Scalar>& limits = settings.sensors[static_cast<std::size_t>(i)];
@@ -77,7 +76,7 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
     if (!known.has_rates()) continue;
     const double rests_s = 60 * known.longest_still_min(i) * wishes.frozen_factor + wishes.frozen_floor_s;
     limits.frozen_steps = wishes.frozen_factor > 0 ? std::max(2u, detail::steps_in(rests_s, wishes.period_s)) : 0;
-    all_rest_min = std::min(all_rest_min, known.longest_still_min(i));
+    all_frozen_steps = i == 0 ? limits.frozen_steps : std::min(all_frozen_steps, limits.frozen_steps);
     const double per_step_K = known.largest_rate_K_per_min(i) / 60 * wishes.period_s;
     limits.largest_step_K = static_cast<Scalar>(wishes.rate_floor_K + wishes.rate_factor * per_step_K);
     const double still_s = 60 * known.longest_still_min(i) * wishes.stuck_factor;
@@ -85,10 +84,7 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
   }
   settings.patience = {std::max(1u, detail::steps_in(wishes.lost_after_s, wishes.period_s)),
                        std::max(1u, detail::steps_in(wishes.recover_after_s, wishes.period_s)),
-                       static_cast<Scalar>(wishes.others_moved_K), 0};
-  if (known.has_rates() && wishes.frozen_factor > 0)
-    settings.patience.all_frozen_steps = std::max(
-        2u, detail::steps_in(60 * all_rest_min * wishes.frozen_factor + wishes.frozen_floor_s, wishes.period_s));
+                       static_cast<Scalar>(wishes.others_moved_K), all_frozen_steps};
   settings.hold_steps = detail::steps_in(wishes.hold_s, wishes.period_s);
   settings.domain_policy = trained.domain.score_variance.size() > 0 ? wishes.domain_policy : DomainPolicy::ignore;
   settings.sign = wishes.sign;
