@@ -48,20 +48,34 @@ std::vector<Finding> find_faults(const Batch& as_recorded, const FindingLimits& 
                                               channels.names[static_cast<std::size_t>(c)], limits.possible))
         findings.push_back(std::move(one));
   }
+  struct Judged {
+    Series series;
+    SeriesScale scale;
+    std::vector<Finding> transient;
+  };
+  const auto judged = [&](const Channels& channels, const std::string& unit) {
+    std::vector<Judged> all;
+    for (Index c = 0; c < channels.count(); ++c) {
+      all.push_back({Series(channels.values.col(c)), {}, {}});
+      Judged& one = all.back();
+      one.scale = series_scale(one.series);
+      if (one.series.size() >= limits.judged_rows)
+        one.transient = transient_findings(one.series, one.scale, switching,
+                                           channels.names[static_cast<std::size_t>(c)], unit, limits.transient);
+    }
+    return all;
+  };
+  const std::vector<Judged> temperatures = judged(batch.temperatures, "K"), errors = judged(batch.errors, "um");
   MatrixX<Scalar> smooth = detail::despiked<Scalar>(batch.temperatures.values);
-  for (Index c = 0; c < batch.temperatures.count(); ++c) {  // at the ends no median takes a spike out
-    const Series series(batch.temperatures.values.col(c));
-    if (series.size() < limits.judged_rows) continue;
-    for (const Finding& one : transient_findings(series, series_scale(series), switching, "", "K", limits.transient))
+  for (Index c = 0; c < batch.temperatures.count(); ++c)  // at the ends no median takes a spike out
+    for (const Finding& one : temperatures[static_cast<std::size_t>(c)].transient)
       if (one.rule == FindingRule::spike && (one.first_row < 2 || one.last_row + 2 >= batch.rows()))
         smooth.col(c).segment(one.first_row, one.last_row - one.first_row + 1).setConstant(std::nan(""));
-  }
   const auto check = [&](const Channels& channels, const Channels& recorded, bool is_error) {
     for (Index c = 0; c < channels.count(); ++c) {
-      const Series series(channels.values.col(c));
       const std::string& name = channels.names[static_cast<std::size_t>(c)];
       const std::string unit = is_error ? "um" : "K";
-      const SeriesScale scale = series_scale(series);
+      const auto& [series, scale, transient] = (is_error ? errors : temperatures)[static_cast<std::size_t>(c)];
       if (const auto lost = missing_finding(recorded.values.col(c), name)) findings.push_back(*lost);
       if (series.size() < 2) continue;
       if (scale.range() == 0) {
@@ -79,9 +93,9 @@ std::vector<Finding> find_faults(const Batch& as_recorded, const FindingLimits& 
       }
       const auto frozen = frozen_finding<Scalar>(batch, smooth, c, is_error, series, scale, limits.frozen);
       if (frozen) findings.push_back(*frozen);
-      for (Finding& one : transient_findings(series, scale, switching, name, unit, limits.transient))
+      for (const Finding& one : transient)
         if (!frozen || one.last_row < frozen->first_row || one.first_row > frozen->last_row + 1)
-          findings.push_back(std::move(one));
+          findings.push_back(one);
     }
   };
   check(batch.temperatures, as_recorded.temperatures, false);

@@ -26,6 +26,15 @@ struct TransientLimits {
   std::size_t back_within_rows = 5;  ///< a jump that is taken back within so many rows is a spike
   double back_share = 0.3;           ///< taken back: but for this share
   Index settling_rows = 2;           ///< so many rows after an input has switched may jump
+
+  /// From where on a reading is a spike in a series of that scale, in its unit.
+  double spike_of(const SeriesScale& scale) const {
+    return std::max(spike_noise * scale.noise, spike_steps * scale.resolution);
+  }
+  /// From where on a step is a jump in it.
+  double jump_of(const SeriesScale& scale) const {
+    return std::max(jump_noise * scale.noise, jump_steps * scale.resolution);
+  }
 };
 
 /// When a change of an input is a switch that may make readings jump.
@@ -86,8 +95,7 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
                                                const std::vector<Index>& switching, const std::string& name,
                                                const std::string& unit, const TransientLimits& limits = {}) {
   const std::vector<double>& x = series.values;
-  const double spike_limit = std::max(limits.spike_noise * scale.noise, limits.spike_steps * scale.resolution);
-  const double jump_limit = std::max(limits.jump_noise * scale.noise, limits.jump_steps * scale.resolution);
+  const double spike_limit = limits.spike_of(scale), jump_limit = limits.jump_of(scale);
   std::vector<Finding> findings;
   const auto after_gap = [&](std::size_t i) { return series.rows[i] > series.rows[i - 1] + 1; };
   const auto explained = [&](std::size_t i) {
@@ -156,9 +164,8 @@ inline double first_reading_off_K(const Series& series, const TransientLimits& l
   std::array<double, 3> steps{x[2] - x[1], x[3] - x[2], x[4] - x[3]};
   std::sort(steps.begin(), steps.end());
   const double trend = steps[1], first = x[1] - x[0];
-  const SeriesScale scale = series_scale(series);
-  const double limit = std::max(limits.jump_noise * scale.noise, limits.jump_steps * scale.resolution);
-  return std::abs(first - trend) > limit && first * trend <= 0 ? std::abs(first - trend) : 0;
+  const double off_K = std::abs(first - trend);
+  return first * trend <= 0 && off_K > limits.jump_of(series_scale(series)) ? off_K : 0;
 }
 
 }  // namespace thermfit
