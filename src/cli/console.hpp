@@ -34,11 +34,11 @@ class Console {
   /// Sends the result to `path` instead of stdout: a temporary file beside it, then a rename.
   void write_to(std::string path) { path_ = std::move(path); }
 
-  /// Writes what has been printed so far to stdout now (for `run`, line by line). Throws Error on a failed write.
+  /// Writes what has been printed so far to stdout now (for `run`, line by line); false when the reader has closed the
+  /// pipe. Throws Error on a failed write.
   bool flush();
 
-  /// Writes the result. Throws thermfit::Error when not every byte arrived; a pipe closed by its reader is no error:
-  /// then false.
+  /// Writes the result. Throws thermfit::Error when not every byte arrived; a pipe closed by its reader is no error.
   void finish();
 
  private:

@@ -39,6 +39,7 @@ std::vector<Option> options() {
 Exit run(const Arguments& arguments, Console& console) {
   std::vector<std::string> files = arguments.positionals();
   if (files.size() < 2) throw UsageError("calibrate takes a machine file and batches");
+  const auto output = output_path(arguments);
   const EffectLibrary effects = standard_effects();
   ThermalNetwork network = read_machine(files.front(), effects);
   files.erase(files.begin());
@@ -55,7 +56,7 @@ Exit run(const Arguments& arguments, Console& console) {
   console.progress("calibrating …");
   const Calibration calibration = calibrate(seen, network, effects, how);
   console.progress("");
-  if (const auto path = output_path(arguments)) save_machine(calibration.fit.network(), *path);
+  if (output) save_machine(calibration.fit.network(), *output);
   if (arguments.has("--json"))
     console.print(calibration_json(calibration, seen));
   else

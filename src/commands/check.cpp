@@ -54,8 +54,9 @@ Exit run(const Arguments& arguments, Console& console) {
     if (const Batch* original = copied_from(campaign, b))
       findings.push_back({FindingRule::copy, "all", 0, campaign[b].rows() - 1, 0, 0, "",
                           "holds the numbers of " + original->name + " once more"});
-    checked.push_back({campaign[b], std::move(findings)});
+    checked.push_back({{}, std::move(findings)});
   }
+  for (std::size_t b = 0; b < campaign.size(); ++b) checked[b].batch = std::move(campaign[b]);
   console.print(arguments.has("--json") ? check_json(checked) : check_text(checked));
   const bool clean = std::all_of(checked.begin(), checked.end(), [](const auto& one) { return one.findings.empty(); });
   return clean ? Exit::done : Exit::negative;

@@ -83,6 +83,7 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
       !words.empty() && words[0].size() > 5 && words[0].compare(words[0].size() - 5, 5, ".json") == 0;
   if (!first_is_machine || words.size() < 2)
     throw UsageError("diagnose takes a machine file (*.json) and measured batches, or --sim and measured batches");
+  const auto output = output_path(arguments, "--write");
   const EffectLibrary library = standard_effects();
   const ThermalNetwork machine = read_machine(words[0], library);
   DiagnoseOptions options;
@@ -97,7 +98,7 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
   require_time(real);
   Diagnosis found = diagnose(machine, real, library, options);
   if (found.machine.empty()) found.machine = words[0];
-  if (const auto path = output_path(arguments, "--write")) save_machine(found.with_effects, *path);
+  if (output) save_machine(found.with_effects, *output);
   return found;
 }
 

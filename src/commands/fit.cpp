@@ -83,6 +83,7 @@ Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan
 }
 
 Exit run_fit(const Arguments& arguments, Console& console) {
+  const auto output = output_path(arguments);
   const Campaign campaign = read_campaign(arguments, console, arguments.positionals());
   TrainingPlan plan;
   plan.options = fit_options(arguments);
@@ -104,9 +105,9 @@ Exit run_fit(const Arguments& arguments, Console& console) {
     print_model(model, console);
     print_jackknife(campaign, model, plan, console);
   }
-  if (const auto path = output_path(arguments)) {
-    save_model(model, *path);
-    console.note("model written to " + *path);
+  if (output) {
+    save_model(model, *output);
+    console.note("model written to " + *output);
   }
   return Exit::done;
 }

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
-#include "options/file_identity.hpp"
 #include "thermfit/findings/transient_findings.hpp"
+#include "thermfit/io/files/file_identity.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/io/units.hpp"
 #include "thermfit/number.hpp"
@@ -164,24 +163,18 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths) {
 
 namespace {
 
-/// Throws Error on what is not a batch by its first character, and on one file under two names.
+/// Throws Error on what is not a batch by its first character.
 void require_batches(const std::vector<std::string>& files) {
-  std::map<std::pair<dev_t, ino_t>, std::string> seen;
-  for (const std::string& file : files) {
-    const auto identity = file_identity(file);
-    if (!identity) continue;
-    const auto [first, fresh] = seen.emplace(*identity, file);
-    if (!fresh && first->second != file)
-      throw Error(file, "is the same file as " + first->second, "each file once", "leave one of them out");
+  for (const std::string& file : files)
     if (begins_as_json(file))
       throw Error(file, "is a JSON document, as models and machines are", "batches: tables of text, .csv or .csv.gz",
                   "where a command takes a model or a machine, it comes first");
-  }
 }
 
 }  // namespace
 
 bool begins_as_json(const std::string& path) {
+  if (!file_identity(path)) return false;  // what is looked at in a pipe is gone
   std::ifstream file(path);
   char first = 0;
   return file >> first && first == '{';

@@ -30,7 +30,7 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths);
 CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths);
 Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths);
 
-/// Whether a file begins as a JSON document does.
+/// Whether a plain file begins as a JSON document does.
 bool begins_as_json(const std::string& path);
 
 /// The batch before the `b`th that holds the same numbers, ten rows or more, or nullptr.

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "options/campaign_options.hpp"
-#include "options/file_identity.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/io/files/file_identity.hpp"
 
 namespace thermfit::cli {
 namespace {

@@ -9,6 +9,7 @@
 #include "thermfit/compiled.hpp"
 #include "thermfit/io/csv/rows.hpp"
 #include "thermfit/io/files/batch_digest.hpp"
+#include "thermfit/io/files/file_identity.hpp"
 
 namespace thermfit {
 
@@ -142,11 +143,20 @@ template <typename Scalar = double>
 CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions& options = {}) {
   CsvReading reading;
   Problems problems(options.max_errors);
+  std::map<std::pair<dev_t, ino_t>, std::string> names;  // by which each file was read
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) !=
-        paths.begin() + static_cast<std::ptrdiff_t>(i)) {
+    const auto before = paths.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(paths.begin(), before, paths[i]) != before) {
       problems.add(detail::problem(paths[i], {"is given twice"}, {"each file once"}));
       continue;
+    }
+    if (const auto identity = file_identity(paths[i])) {
+      const auto [first, fresh] = names.emplace(*identity, paths[i]);
+      if (!fresh) {
+        problems.add(detail::problem(paths[i], {"is the same file as ", first->second}, {"each file once"},
+                                     {"leave one of them out"}));
+        continue;
+      }
     }
     try {
       detail::read_file(paths[i], options, problems, reading);

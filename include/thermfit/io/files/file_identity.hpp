@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
-namespace thermfit::cli {
+namespace thermfit {
 
-/// The file that a path leads to, whatever it is called there; none for what is no plain file.
+/// The file that a path leads to, the same for all its names and links; none for what is no plain file or is not there.
 inline std::optional<std::pair<dev_t, ino_t>> file_identity(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   return std::make_pair(status.st_dev, status.st_ino);
 }
 
-}  // namespace thermfit::cli
+}  // namespace thermfit
