@@ -61,6 +61,18 @@ TEST_CASE("settings follow from the envelope of the sensors and the period", "[c
   CHECK(settings.outputs[1].clamp_um == std::ceil(std::abs(example_model().error_mean(1)) + 24));
 }
 
+TEST_CASE("samples of a zero may scatter and drift as in training, by 1 K each where that is not known",
+          "[controller]") {
+  CompensationWishes wishes;
+  wishes.period_s = 10;
+  TrainedModel model = example_model();
+  CHECK(settings_for<double>(model, wishes).sensors[0].agree_K == Approx(.1 + 2. / 60 * 2 * 10));
+  model.envelope.largest_rate_K_per_min.resize(0);
+  CHECK(settings_for<double>(model, wishes).sensors[0].agree_K == Approx(1.1));
+  model.envelope = {};
+  CHECK(settings_for<double>(model, wishes).sensors[0].agree_K == 2);
+}
+
 TEST_CASE("settings that break a rule are refused by the rule's text", "[controller]") {
   CompensationWishes wishes;
   wishes.slew_um_per_s = 0;

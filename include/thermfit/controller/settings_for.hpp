@@ -64,11 +64,13 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
     limits.lowest_degC = static_cast<Scalar>(known.has_range() ? known.lowest_degC(i) - wishes.range_margin_K : -50);
     limits.highest_degC = static_cast<Scalar>(known.has_range() ? known.highest_degC(i) + wishes.range_margin_K : 150);
     limits.largest_step_K = Scalar(1e6);
-    double drift_K = 0;  // over the samples of a zero
-    if (known.has_rates())
-      drift_K = known.largest_rate_K_per_min(i) / 60 * (settings.zero.samples - 1) * wishes.period_s;
-    limits.agree_K =
-        static_cast<Scalar>(known.has_starts() ? std::max(0.05, known.scatter_K(i)) + drift_K : 1 + drift_K);
+    // While a zero is taken samples scatter and drift. Too little allowed would wait until a machine moves slowly, and
+    // put its zero there: what is not known counts 1 K.
+    const double scatter_K = known.has_starts() ? std::max(0.05, known.scatter_K(i)) : 1,
+                 drift_K = known.has_rates()
+                               ? known.largest_rate_K_per_min(i) / 60 * (settings.zero.samples - 1) * wishes.period_s
+                               : 1;
+    limits.agree_K = static_cast<Scalar>(scatter_K + drift_K);
     if (known.has_starts()) {
       limits.first_lowest_degC = static_cast<Scalar>(known.first_lowest_degC(i) - wishes.first_margin_K);
       limits.first_highest_degC = static_cast<Scalar>(known.first_highest_degC(i) + wishes.first_margin_K);
