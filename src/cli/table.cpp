@@ -1,8 +1,13 @@
 #include "cli/table.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "thermfit/number.hpp"
 
 namespace thermfit::cli {
+
+std::string known_text(double value, int decimals) { return std::isnan(value) ? "-" : fixed_text(value, decimals); }
 
 std::size_t display_width(std::string_view text) {
   std::size_t width = 0;

@@ -24,6 +24,9 @@ class Table {
   std::vector<std::size_t> rules_, left_;
 };
 
+/// `value` with `decimals` digits after the point, or "-" where it is not known.
+std::string known_text(double value, int decimals);
+
 /// Columns `text` takes on a terminal: UTF-8 sequences count one, ANSI colours none.
 std::size_t display_width(std::string_view text);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "commands/commands.hpp"
+#include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
 #include "options/output.hpp"
 #include "report/check_json.hpp"
@@ -48,7 +49,7 @@ Exit run(const Arguments& arguments, Console& console) {
   reading.increasing_time = false;
   std::vector<CheckedBatch> checked;
   Campaign campaign = read_files(reading, console, arguments.positionals()).batches;
-  note_first_readings(campaign, TemperatureReference::rise, console);
+  note_faults(campaign, TemperatureReference::rise, console);
   for (std::size_t b = 0; b < campaign.size(); ++b) {
     std::vector<Finding> findings = find_faults(campaign[b]);
     if (const Batch* original = copied_from(campaign, b))

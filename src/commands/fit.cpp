@@ -1,5 +1,6 @@
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
+#include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
@@ -60,6 +61,16 @@ void print_jackknife(const Campaign& campaign, const TrainedModel& model, const 
   console.print(table.text(2));
 }
 
+/// What was asked for and could not be had, or says nothing.
+void note_limits(const TrainedModel& model, const TrainingPlan& plan, const std::string& name, const Console& console) {
+  if (model.degrees_of_freedom == 0)
+    console.note(name + "no degrees of freedom are left, so that its S says nothing: fit more rows or fewer points");
+  const Index wanted = plan.options.components.kind == ComponentRule::Kind::fixed ? plan.options.components.count : 0;
+  if (model.components > 0 && model.components < wanted)
+    console.note(name + std::to_string(wanted) + " latent variables were asked for, " +
+                 std::to_string(model.components) + " are used: its points have no more independent directions");
+}
+
 Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan plan, Console& console) {
   std::vector<std::pair<std::string, TrainedModel>> models;
   for (const Batch& batch : campaign) {
@@ -73,22 +84,23 @@ Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan
   const std::vector<std::string> paths = outputs_in_folder(arguments, names);
   for (std::size_t b = 0; b < models.size(); ++b) {
     const auto& [name, model] = models[b];
+    note_limits(model, plan, name + ": ", console);
     if (!paths.empty()) save_model(model, paths[b]);
     for (Index e = 0; e < model.model.errors(); ++e)
-      console.print(wrap(
-          name + ": " + model_equation(model, e) + "   (S " + fixed_text(model.residual_deviation_um(e), 2) + " um)",
-          80, 4));
+      console.print(wrap(name + ": " + model_equation(model, e) + "   (S " +
+                             (model.degrees_of_freedom > 0 ? fixed_text(model.residual_deviation_um(e), 2) : "-") +
+                             " um)",
+                         80, 4));
   }
   return Exit::done;
 }
 
 Exit run_fit(const Arguments& arguments, Console& console) {
   const auto output = output_path(arguments);
-  const Campaign campaign = read_campaign(arguments, console, arguments.positionals());
   TrainingPlan plan;
   plan.options = fit_options(arguments);
   plan.reference = temperature_reference(arguments);
-  note_first_readings(campaign, plan.reference, console);
+  const Campaign campaign = learning_campaign(arguments, console, plan.reference);
   plan.row_wise = arguments.has("--row-wise");
   const std::string method = arguments.choice("--method", {"pls", "mlr", "pcr", "ridge"}, "pls");
   for (const Method one : {Method::pls, Method::mlr, Method::pcr, Method::ridge})
@@ -99,6 +111,7 @@ Exit run_fit(const Arguments& arguments, Console& console) {
 
   plan.points = chosen_points(campaign, arguments, plan);
   const TrainedModel model = train(campaign, plan);
+  note_limits(model, plan, "", console);
   if (arguments.has("--json")) {
     console.line(model_to_json(model).dump(1));
   } else {

@@ -4,6 +4,7 @@
 
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
+#include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
@@ -95,7 +96,7 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   if (options.errors.empty()) options.errors = model.errors;
   options.errors_may_lack = true;
   const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
-  note_first_readings(campaign, model.reference, console);
+  note_faults(campaign, model.reference, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
   if (const auto path = output_path(arguments)) console.write_to(*path);

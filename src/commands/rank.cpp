@@ -1,5 +1,6 @@
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
+#include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
@@ -41,7 +42,7 @@ std::vector<Ranking> rank_all(const Campaign& campaign, const Arguments& argumen
 }
 
 Exit run_rank(const Arguments& arguments, Console& console) {
-  const Campaign campaign = read_campaign(arguments, console, arguments.positionals());
+  const Campaign campaign = learning_campaign(arguments, console, temperature_reference(arguments));
   const Index count = require_points(arguments, campaign, campaign.front().temperatures.count());
   const std::vector<std::string>& names = campaign.front().temperatures.names;
   const std::vector<std::string>& errors = campaign.front().errors.names;
@@ -67,7 +68,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
     std::vector<std::string> row{ranking.batch};
     for (const Index p : ranking.points) {
       std::string cell = names[static_cast<std::size_t>(p)];
-      for (Index e = 0; e < ranking.correlations.cols(); ++e) cell += ' ' + fixed_text(ranking.correlations(p, e), 2);
+      for (Index e = 0; e < ranking.correlations.cols(); ++e) cell += ' ' + known_text(ranking.correlations(p, e), 2);
       row.push_back(cell);
     }
     table.add(row);

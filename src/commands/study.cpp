@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
+#include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
@@ -61,16 +62,15 @@ Exit judge(const StudyReport& report, const Arguments& arguments, Console& conso
 }
 
 Exit run_study(const Arguments& arguments, Console& console) {
-  const Campaign campaign = read_campaign(arguments, console, arguments.positionals());
+  StudyReport report;
+  report.reference = temperature_reference(arguments);
+  const Campaign campaign = learning_campaign(arguments, console, report.reference);
   StudyOptions options;
   options.points = require_points(arguments, campaign, 2);
   options.most_points = arguments.integer("--most-points", 1, 10000).value_or(0);
   options.fit = fit_options(arguments);
   options.own_batch = arguments.has("--own-batch");
 
-  StudyReport report;
-  report.reference = temperature_reference(arguments);
-  note_first_readings(campaign, report.reference, console);
   report.temperatures = campaign.front().temperatures.names;
   report.errors = campaign.front().errors.names;
   for (const Batch& batch : campaign) {

@@ -6,11 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "thermfit/findings/transient_findings.hpp"
 #include "thermfit/io/files/file_identity.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/io/units.hpp"
-#include "thermfit/number.hpp"
 
 namespace thermfit::cli {
 namespace {
@@ -207,19 +205,6 @@ Campaign read_campaign(const Arguments& arguments, const Console& console, const
   Campaign campaign = read_files(csv_options(arguments), console, paths).batches;
   note_copies(campaign, console);
   return campaign;
-}
-
-void note_first_readings(const Campaign& campaign, TemperatureReference reference, const Console& console) {
-  if (reference != TemperatureReference::rise) return;
-  for (const Batch& batch : campaign)
-    for (Index c = 0; c < batch.temperatures.count(); ++c) {
-      const double off_K = first_reading_off_K(Series(batch.temperatures.values.col(c)));
-      if (off_K > 0)
-        console.note(batch.source + ": " + batch.temperatures.names[static_cast<std::size_t>(c)] + " begins " +
-                     fixed_text(off_K, 2) +
-                     " K off the rows that follow, and every rise of the batch counts from its " +
-                     "first row: was the machine not at rest, or is that reading bad?");
-    }
 }
 
 void require_errors(const Campaign& campaign) {

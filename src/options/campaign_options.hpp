@@ -39,10 +39,6 @@ const Batch* copied_from(const Campaign& campaign, std::size_t b);
 /// Says which batches hold the numbers of another.
 void note_copies(const Campaign& campaign, const Console& console);
 
-/// Where temperatures count from the first row, says which first readings are off those that follow: they move every
-/// row of their batch.
-void note_first_readings(const Campaign& campaign, TemperatureReference reference, const Console& console);
-
 /// Throws Error, with the columns there are, when batches have no thermal error to be fitted or compared.
 void require_errors(const Campaign& campaign);
 

@@ -55,7 +55,7 @@ void print_substitutes(const TrainedModel& m, Console& console) {
   Table table(header);
   const auto row = [&](const std::string& name, const Vector& deviation) {
     std::vector<std::string> cells{name};
-    for (const double value : deviation) cells.push_back(fixed_text(value, 2));
+    for (const double value : deviation) cells.push_back(m.degrees_of_freedom > 0 ? fixed_text(value, 2) : "-");
     table.add(cells);
   };
   row("none", m.residual_deviation_um);
@@ -109,7 +109,7 @@ void print_model(const TrainedModel& m, Console& console) {
             std::string text;
             for (Index j = 0; j < m.model.errors(); ++j)
               text += (j ? ", " : " ") + m.errors[static_cast<std::size_t>(j)] + ' ' +
-                      fixed_text(m.residual_deviation_um(j), 2) + " um";
+                      (m.degrees_of_freedom > 0 ? fixed_text(m.residual_deviation_um(j), 2) + " um" : "-");
             return text;
           }() +
           ", " + std::to_string(m.degrees_of_freedom) + " degrees of freedom; condition number of the " +

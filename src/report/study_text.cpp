@@ -101,7 +101,7 @@ class ErrorSection {
     for (std::size_t b = 0; b < r_.batches.size(); ++b) {
       std::vector<std::string> row{r_.batches[b]};
       for (Index p = 0; p < r_.study.points; ++p)
-        row.push_back(fixed_text(r_.study.correlations[b](p, static_cast<Index>(e_)), 2));
+        row.push_back(known_text(r_.study.correlations[b](p, static_cast<Index>(e_)), 2));
       row.push_back(first.chosen() ? points(first.chosen()->models[b].points) : "");
       table.add(row);
     }

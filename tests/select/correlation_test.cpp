@@ -81,6 +81,20 @@ TEST_CASE("the ranking of a batch of one row, or of a constant error, is the col
   }
 }
 
+TEST_CASE("there is no correlation of a constant channel, nor of two rows, which always agree", "[select]") {
+  const ThermalRows data(10, 3, 1, 2);
+  Matrix t = data.temperatures;
+  t.col(1).setConstant(20);
+  const Matrix r = correlations(Moments(t, data.errors));
+  CHECK(std::isnan(r(1, 0)));
+  CHECK(std::abs(r(0, 0)) <= 1);
+  for (const Index rows : {1, 2}) {
+    const Moments<> few(data.temperatures.topRows(rows), data.errors.topRows(rows));
+    CHECK(correlations(few).array().isNaN().all());
+    CHECK(correlation_ranking(few).front().score == 0);
+  }
+}
+
 TEST_CASE("anything that names points is a rule, and what it names is checked", "[select]") {
   const ThermalRows data(20, 3, 1, 3);
   const Observations<> batch = observed(data.temperatures, data.errors);

@@ -8,11 +8,12 @@
 
 namespace thermfit {
 
-/// Correlation coefficients of eq. (1), points x responses, sign kept; 0 where either channel is constant.
-/// Needs two rows to be anything but 0. Allocates the result.
+/// Correlation coefficients of eq. (1), points x responses, sign kept; NaN where there is none: a channel is constant,
+/// or two rows or fewer say nothing, since two always agree. Allocates the result.
 template <typename Scalar>
 MatrixX<Scalar> correlations(const Moments<Scalar>& moments) {
-  MatrixX<Scalar> r = MatrixX<Scalar>::Zero(moments.temperatures(), moments.errors());
+  MatrixX<Scalar> r = MatrixX<Scalar>::Constant(moments.temperatures(), moments.errors(), Scalar(std::nan("")));
+  if (moments.rows() < 3) return r;
   for (Index p = 0; p < r.rows(); ++p) {
     for (Index e = 0; e < r.cols(); ++e) {
       if (moments.constant(p) || moments.constant(moments.temperatures() + e)) continue;
@@ -32,14 +33,15 @@ struct RankedPoint {
 };
 
 /// Points by the size of their correlation with error `response`, or, if that is negative, by the root mean square of
-/// their correlations with all errors. Constant points come last; equal ones keep the order of the columns. A response
-/// there is not: Error. Allocates.
+/// their correlations with all errors; one that there is not counts 0. Constant points come last; equal ones keep the
+/// order of the columns. A response there is not: Error. Allocates.
 template <typename Scalar>
 std::vector<RankedPoint<Scalar>> correlation_ranking(const Moments<Scalar>& moments, Index response = -1) {
   if (response >= moments.errors()) {
     throw Error("response", std::to_string(response), "0 to " + std::to_string(moments.errors() - 1));
   }
-  const MatrixX<Scalar> r = correlations(moments);
+  MatrixX<Scalar> r = correlations(moments);
+  r = r.array().isNaN().select(Scalar(0), r);
   std::vector<RankedPoint<Scalar>> ranking;
   for (Index p = 0; p < r.rows(); ++p) {
     const Scalar score = response >= 0   ? std::abs(r(p, response))
