@@ -6,7 +6,7 @@
 #include "options/output.hpp"
 #include "report/check_json.hpp"
 #include "report/check_text.hpp"
-#include "thermfit/findings/findings.hpp"
+#include "thermfit/findings/campaign_findings.hpp"
 
 namespace thermfit::cli {
 namespace {
@@ -50,14 +50,8 @@ Exit run(const Arguments& arguments, Console& console) {
   std::vector<CheckedBatch> checked;
   Campaign campaign = read_files(reading, console, arguments.positionals()).batches;
   note_faults(campaign, TemperatureReference::rise, console);
-  for (std::size_t b = 0; b < campaign.size(); ++b) {
-    std::vector<Finding> findings = find_faults(campaign[b]);
-    if (const Batch* original = copied_from(campaign, b))
-      findings.push_back({FindingRule::copy, "all", 0, campaign[b].rows() - 1, 0, 0, "",
-                          "holds the numbers of " + original->name + " once more"});
-    checked.push_back({{}, std::move(findings)});
-  }
-  for (std::size_t b = 0; b < campaign.size(); ++b) checked[b].batch = std::move(campaign[b]);
+  CampaignFindings findings = find_faults(campaign);
+  for (std::size_t b = 0; b < campaign.size(); ++b) checked.push_back({std::move(campaign[b]), std::move(findings[b])});
   console.print(arguments.has("--json") ? check_json(checked) : check_text(checked));
   const bool clean = std::all_of(checked.begin(), checked.end(), [](const auto& one) { return one.findings.empty(); });
   return clean ? Exit::done : Exit::negative;

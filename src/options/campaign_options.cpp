@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "thermfit/findings/copy_findings.hpp"
 #include "thermfit/io/files/file_identity.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/io/units.hpp"
@@ -183,13 +184,6 @@ void note_copies(const Campaign& campaign, const Console& console) {
     if (const Batch* original = copied_from(campaign, b))
       console.note(campaign[b].source + ": holds the numbers of " + original->name +
                    " once more: what is left out for a figure is then not left out; leave one of them out");
-}
-
-const Batch* copied_from(const Campaign& campaign, std::size_t b) {
-  if (campaign[b].rows() < 10) return nullptr;  // a few rows may well agree
-  for (std::size_t earlier = 0; earlier < b; ++earlier)
-    if (!campaign[b].digest.empty() && campaign[earlier].digest == campaign[b].digest) return &campaign[earlier];
-  return nullptr;
 }
 
 CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths) {

@@ -33,9 +33,6 @@ Campaign read_campaign(const Arguments& arguments, const Console& console, const
 /// Whether a plain file begins as a JSON document does.
 bool begins_as_json(const std::string& path);
 
-/// The batch before the `b`th that holds the same numbers, ten rows or more, or nullptr.
-const Batch* copied_from(const Campaign& campaign, std::size_t b);
-
 /// Says which batches hold the numbers of another.
 void note_copies(const Campaign& campaign, const Console& console);
 

@@ -1,0 +1,28 @@
+#pragma once
+
+/// What is suspicious about the batches of a campaign: each by itself, and beside the others.
+
+#include <utility>
+#include <vector>
+
+#include "thermfit/batch/batch.hpp"
+#include "thermfit/findings/copy_findings.hpp"
+#include "thermfit/findings/findings.hpp"
+
+namespace thermfit {
+
+/// One list of findings a batch, in the order of a campaign.
+using CampaignFindings = std::vector<std::vector<Finding>>;
+
+/// Everything suspicious about each batch, by find_faults(Batch), and about each beside the others: batches that hold
+/// the numbers of an earlier one. Allocates.
+template <typename Scalar = double>
+CampaignFindings find_faults(const Campaign& campaign, const FindingLimits& limits = {}) {
+  CampaignFindings findings;
+  for (const Batch& batch : campaign) findings.push_back(find_faults<Scalar>(batch, limits));
+  for (std::size_t b = 0; b < campaign.size(); ++b)
+    if (auto copy = copy_finding(campaign, b)) findings[b].push_back(std::move(*copy));
+  return findings;
+}
+
+}  // namespace thermfit

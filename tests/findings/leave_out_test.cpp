@@ -1,0 +1,109 @@
+#include "thermfit/findings/leave_out.hpp"
+
+#include "support/catch.hpp"
+#include "support/vcenter55.hpp"
+#include "thermfit/findings/campaign_findings.hpp"
+#include "thermfit/findings/copy_findings.hpp"
+
+using namespace thermfit;
+
+namespace {
+
+LeaveOut leave_out_of(const Campaign& campaign) { return leave_out(campaign, find_faults(campaign)); }
+
+auto temperature(Batch& batch, Index number) { return batch.temperatures.values.col(number - 1); }
+
+}  // namespace
+
+TEST_CASE("of a sound campaign nothing is left out", "[findings]") {
+  const Campaign campaign = vcenter55();
+  const LeaveOut left = leave_out_of(campaign);
+  CHECK(left.nothing());
+  const Campaign kept = without(campaign, left);
+  REQUIRE(kept.size() == campaign.size());
+  for (std::size_t b = 0; b < kept.size(); ++b) CHECK(kept[b].temperatures.values == campaign[b].temperatures.values);
+}
+
+TEST_CASE("bad readings are left out as rows of their batch", "[findings]") {
+  Campaign campaign = vcenter55();
+  temperature(campaign[2], 3)(30) += 5;
+  campaign[2].errors.values(40, 0) = -1e12;
+  temperature(campaign[2], 4).segment(60, 2).setConstant(-127);
+  const LeaveOut left = leave_out_of(campaign);
+  CHECK(left.rows[2] == std::vector<Index>{30, 40, 60, 61});
+  CHECK(left.temperatures.empty());
+  CHECK(left.batches.empty());
+  REQUIRE(left.reasons.size() == 3);
+  for (const LeaveOut::Reason& reason : left.reasons) {
+    CHECK(reason.batch == 2);
+    CHECK(reason.what == LeaveOut::What::rows);
+  }
+  const Campaign kept = without(campaign, left);
+  CHECK(kept[2].rows() == 75);
+  CHECK(kept[2].dropped_rows == 4);
+  CHECK(kept[2].time_s(30) == campaign[2].time_s(31));
+  CHECK(kept[2].errors.values(74, 0) == campaign[2].errors.values(78, 0));
+  CHECK(leave_out_of(kept).nothing());
+}
+
+TEST_CASE("a sensor that is faulty in one batch is left out of all, since models need the same points", "[findings]") {
+  Campaign campaign = vcenter55();
+  temperature(campaign[5], 7).tail(69).setConstant(temperature(campaign[5], 7)(10));
+  const LeaveOut left = leave_out_of(campaign);
+  CHECK(left.temperatures == std::vector<std::string>{"T7"});
+  CHECK(left.batches.empty());
+  CHECK(left.rows[5].empty());
+  const Campaign kept = without(campaign, left);
+  REQUIRE(kept.size() == 12);
+  for (std::size_t b = 0; b < 12; ++b) {
+    CHECK(kept[b].temperatures.count() == 9);
+    CHECK(kept[b].temperatures.find("T7") == -1);
+    CHECK(kept[b].temperatures.values.col(kept[b].temperatures.find("T8")) == temperature(campaign[b], 8));
+  }
+}
+
+TEST_CASE("a batch is left out for its error, for being a copy, or when most of its sensors are faulty", "[findings]") {
+  Campaign campaign = vcenter55();
+  SECTION("the error never moves") { campaign[1].errors.values.setZero(); }
+  SECTION("a copy") { campaign[1].digest = campaign[0].digest = "the same"; }
+  SECTION("six of ten sensors") {
+    for (Index number = 1; number <= 6; ++number) temperature(campaign[1], number).setConstant(20);
+  }
+  const LeaveOut left = leave_out_of(campaign);
+  CHECK(left.batches == std::vector<std::size_t>{1});
+  CHECK(left.temperatures.empty());
+  for (const LeaveOut::Reason& reason : left.reasons) CHECK(reason.what == LeaveOut::What::batch);
+  const Campaign kept = without(campaign, left);
+  REQUIRE(kept.size() == 11);
+  CHECK(kept[1].name == "K03");
+}
+
+TEST_CASE("an error that is faulty in every batch goes, where another is there", "[findings]") {
+  Campaign campaign = vcenter55();
+  for (Batch& batch : campaign) {
+    batch.errors.names = {"X", "Z"};
+    batch.errors.values.conservativeResize(batch.rows(), 2);
+    batch.errors.values.col(1) = batch.errors.values.col(0);
+    batch.errors.values.col(0).setZero();
+  }
+  const LeaveOut left = leave_out_of(campaign);
+  CHECK(left.errors == std::vector<std::string>{"X"});
+  CHECK(left.batches.empty());
+  CHECK(without(campaign, left)[3].errors.names == std::vector<std::string>{"Z"});
+}
+
+TEST_CASE("a jump leaves out the shorter side of its batch", "[findings]") {
+  Campaign campaign = vcenter55();
+  campaign[4].errors.values.col(0).tail(10).array() -= 60;
+  const LeaveOut left = leave_out_of(campaign);
+  REQUIRE(left.rows[4].size() == 10);
+  CHECK(left.rows[4].front() == 69);
+  CHECK(left.rows[4].back() == 78);
+}
+
+TEST_CASE("what is worth knowing only leaves out nothing", "[findings]") {
+  Campaign campaign = vcenter55();
+  temperature(campaign[0], 6) = temperature(campaign[0], 1);  // collinear
+  campaign[1].time_s.tail(39).array() += 40000;               // a gap
+  CHECK(leave_out_of(campaign).nothing());
+}
