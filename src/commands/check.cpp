@@ -12,7 +12,7 @@ namespace thermfit::cli {
 namespace {
 
 const char* const details =
-    R"(Reads batches and says what is suspicious about them before anything is fitted. An overview gives rows, duration, usual time step and ranges; then each finding has its rows, a figure, and the limit of the rule that it breaks:
+    R"(Reads batches and says what is suspicious about them before anything is fitted. An overview gives rows, duration, usual time step and ranges; then a line a kind and channel tells how often, in how many batches, and of the worst its rows, figure and the limit of the rule that it breaks, worst first (--all: every finding):
 
   time-gap    a time step of more than three times the usual one
   time-back   time that repeats or goes back
@@ -32,7 +32,8 @@ Limits are multiples of each channel's own noise and resolution. Rows count from
 Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";
 
 std::vector<Option> options() {
-  std::vector<Option> all{{"--json", "", "machine-readable result, thermfit-check/1", 0, false},
+  std::vector<Option> all{{"--all", "", "every finding, a line each, instead of a line a kind and channel", 0, false},
+                          {"--json", "", "machine-readable result, thermfit-check/1", 0, false},
                           {"--output", "FILE", "write the result there instead of to stdout", 'o', false}};
   for (Option& option : campaign_options()) {
     if (option.name == "--missing")
@@ -52,7 +53,7 @@ Exit run(const Arguments& arguments, Console& console) {
   note_faults(campaign, TemperatureReference::rise, console);
   CampaignFindings findings = find_faults(campaign);
   for (std::size_t b = 0; b < campaign.size(); ++b) checked.push_back({std::move(campaign[b]), std::move(findings[b])});
-  console.print(arguments.has("--json") ? check_json(checked) : check_text(checked));
+  console.print(arguments.has("--json") ? check_json(checked) : check_text(checked, arguments.has("--all")));
   const bool clean = std::all_of(checked.begin(), checked.end(), [](const auto& one) { return one.findings.empty(); });
   return clean ? Exit::done : Exit::negative;
 }
