@@ -10,3 +10,4 @@
 #include "thermfit/robustness/leave_one_batch_out.hpp"
 #include "thermfit/robustness/robustness.hpp"
 #include "thermfit/robustness/study.hpp"
+#include "thermfit/robustness/transfer_left_out.hpp"

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/features/lag.hpp"
+#include "thermfit/moments/moments.hpp"
+
+namespace thermfit {
+
+/// One batch as the method `transfer` sees it: mean products about zero of (rises, lagged rises, 1, errors) for every
+/// lag that may be chosen, and its climate.
+template <typename Scalar = double>
+struct TransferBatch {
+  Index rows = 0;                         ///< it has
+  Index points = 0;                       ///< temperatures
+  bool has_lag = false;                   ///< whether there are lagged rises
+  Scalar climate_degC = 0;                ///< mean temperature of its points at its start
+  std::vector<MatrixX<Scalar>> products;  ///< per lag, divided by rows; one without lagged rises where there is no lag
+
+  /// Rises, lagged rises and the constant; errors come behind them.
+  Index columns() const { return (has_lag ? 2 : 1) * points + 1; }
+};
+
+/// Lags that batches can tell: 10 min times powers of two, from four sampling intervals, below which a lagged rise is
+/// the rise of a few rows ago, to a third of the duration, within which it settles (both of the median batch). None
+/// where a batch has no clock. Allocates.
+inline std::vector<double> visible_lags_min(const Campaign& campaign) {
+  std::vector<double> steps, durations;
+  for (const Batch& batch : campaign) {
+    if (!batch.has_time()) return {};
+    if (batch.rows() < 2) continue;
+    durations.push_back((batch.time_s(batch.rows() - 1) - batch.time_s(0)) / 60);
+    steps.push_back(durations.back() / static_cast<double>(batch.rows() - 1));
+  }
+  if (steps.empty()) return {};
+  const auto median = [](std::vector<double>& values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+  };
+  constexpr double intervals = 4, settled = 3;  // exp(-3): 5 % are left
+  const double shortest = intervals * median(steps), longest = median(durations) / settled;
+  std::vector<double> lags;
+  for (int power = -20; power <= 20; ++power) {
+    const double lag = std::ldexp(10, power);
+    if (lag >= shortest && lag <= longest) lags.push_back(lag);
+  }
+  return lags;
+}
+
+/// A batch through the temperature columns `points`, its errors as they are. Values that are not finite: Error. One
+/// pass a lag; allocates.
+template <typename Scalar = double>
+TransferBatch<Scalar> transfer_batch(const Batch& batch, const std::vector<Index>& points,
+                                     const std::vector<double>& lags_min) {
+  TransferBatch<Scalar> result;
+  const MatrixX<Scalar> rises = model_temperatures<Scalar>(batch, TemperatureReference::rise)(Eigen::all, points);
+  const MatrixX<Scalar> errors = detail::lazy<Scalar>(batch.errors.values).template cast<Scalar>();
+  const Index p = rises.cols(), q = errors.cols();
+  result.rows = batch.rows();
+  result.points = p;
+  result.has_lag = !lags_min.empty();
+  if (batch.rows() > 0) {
+    const MatrixX<Scalar> start = batch.temperatures.values.row(0).template cast<Scalar>();
+    result.climate_degC = start(0, points).mean();
+  }
+  const auto add = [&](const MatrixX<Scalar>& columns) {
+    const Moments<Scalar> moments(columns, errors);
+    const Index c = columns.cols();
+    MatrixX<Scalar> products = MatrixX<Scalar>::Zero(c + 1 + q, c + 1 + q);
+    const Scalar rows = static_cast<Scalar>(std::max<Index>(1, moments.rows()));
+    products.topLeftCorner(c, c) = moments.temperature_products() / rows;
+    products.topRightCorner(c, q) = moments.cross_products() / rows;
+    products.bottomLeftCorner(q, c) = moments.cross_products().transpose() / rows;
+    products.bottomRightCorner(q, q) = moments.error_products() / rows;
+    VectorX<Scalar> mean(c + 1 + q);
+    mean << moments.temperature_mean(), Scalar(1), moments.error_mean();
+    products += mean * mean.transpose();
+    result.products.push_back(std::move(products));
+  };
+  if (lags_min.empty()) add(rises);
+  for (const double lag : lags_min) {
+    MatrixX<Scalar> columns(rises.rows(), 2 * p);
+    columns << rises, lagged(rises, VectorX<Scalar>(detail::lazy<Scalar>(batch.time_s).template cast<Scalar>()),
+                             static_cast<Scalar>(60 * lag));
+    add(columns);
+  }
+  return result;
+}
+
+}  // namespace thermfit
