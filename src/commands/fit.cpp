@@ -2,6 +2,7 @@
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
+#include "options/error_reference.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
 #include "report/model_text.hpp"
@@ -33,14 +34,14 @@ std::vector<Index> chosen_points(const Campaign& campaign, const Arguments& argu
     return {};
   }
   plan.selection = rule;
-  const Observations<> all = merged(observe(campaign, plan.reference));
+  const Observations<> all = merged(observe(campaign, plan.reference, plan.error_reference));
   return rule == "fcgr" ? ByFcgr{}(all, count) : ByCorrelation{}(all, count);
 }
 
 void print_jackknife(const Campaign& campaign, const TrainedModel& model, const TrainingPlan& plan, Console& console) {
   if (campaign.size() < 3) return;
   std::vector<Moments<>> batches;
-  for (const Observations<>& batch : observe(campaign, plan.reference))
+  for (const Observations<>& batch : observe(campaign, plan.reference, plan.error_reference))
     batches.push_back(plan.points.empty() ? batch.moments : batch.moments.subset(plan.points));
   const FitOptions same = settled(plan.options, model);
   const CoefficientSpread<> spread = jackknife(batches, [&](const Moments<>& m) { return fit(plan.method, m, same); });
@@ -100,7 +101,9 @@ Exit run_fit(const Arguments& arguments, Console& console) {
   TrainingPlan plan;
   plan.options = fit_options(arguments);
   plan.reference = temperature_reference(arguments);
+  plan.error_reference = error_reference(arguments);
   const Campaign campaign = learning_campaign(arguments, console, plan.reference);
+  note_starts(campaign, plan.error_reference, true, console);
   plan.row_wise = arguments.has("--row-wise");
   const std::string method = arguments.choice("--method", {"pls", "mlr", "pcr", "ridge"}, "pls");
   for (const Method one : {Method::pls, Method::mlr, Method::pcr, Method::ridge})
@@ -130,6 +133,7 @@ Exit run_fit(const Arguments& arguments, Console& console) {
 Command fit_command() {
   std::vector<Option> options = campaign_options();
   options.push_back(absolute_option());
+  options.push_back(error_reference_option());
   append(options, {{"--method", "M", "pls (default), mlr, pcr or ridge", 0, false}});
   append(options, fit_option_table());
   append(options, {{"--points", "K", "how many temperature points, or 'all' (default 2)", 0, false},

@@ -6,6 +6,7 @@
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
+#include "options/error_reference.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
 #include "thermfit/io/csv/writer.hpp"
@@ -31,23 +32,37 @@ struct Predicted {
   BatchPrediction prediction;
 };
 
+/// Whether a batch holds measured errors.
+bool any_measured(const std::vector<Predicted>& all) {
+  return std::any_of(all.begin(), all.end(), [](const Predicted& one) { return one.prediction.residuals.cols() > 0; });
+}
+
+double largest(const Vector& residuals) {
+  double most = 0;
+  for (Index row = 0; row < residuals.size(); ++row)
+    if (std::isfinite(residuals(row))) most = std::max(most, std::abs(residuals(row)));
+  return most;
+}
+
 std::string domain_word(const TrainedModel& model, const DomainDistance<>& distance) {
   if (outside_limits(model.domain, distance, 99).any()) return "beyond99";
   return outside_limits(model.domain, distance, 95).any() ? "beyond95" : "inside";
 }
 
 void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {
-  const bool timed = all.front().batch->has_time(), measured = all.front().prediction.residuals.cols() > 0;
+  const bool timed = all.front().batch->has_time(), measured = any_measured(all);
   std::string header = timed ? "batch,row,time_min" : "batch,row";
   for (const std::string& error : model.errors) header += ',' + csv_field(error + "_predicted");
   for (const std::string& error : model.errors) header += measured ? ',' + csv_field(error + "_residual") : "";
   console.line(header + ",hotelling_T2,SPE,domain");
   for (const auto& [batch, p] : all)
     for (Index i = 0; i < p.errors.rows(); ++i) {
-      std::string row = csv_field(batch->name) + ',' + std::to_string(i + 1);
+      std::string row = csv_field(batch->name) + ',' + std::to_string(batch->number_of(i));
       if (timed) row += ',' + exact_text(batch->time_s(i) / 60);
       for (Index e = 0; e < p.errors.cols(); ++e) row += ',' + fixed_text(p.errors(i, e), 4);
-      for (Index e = 0; e < p.residuals.cols(); ++e) row += ',' + fixed_text(p.residuals(i, e), 4);
+      for (Index e = 0; e < model.model.errors() && measured; ++e)
+        row +=
+            ',' + (p.residuals.cols() > 0 && std::isfinite(p.residuals(i, e)) ? fixed_text(p.residuals(i, e), 4) : "");
       const DomainDistance<>& d = p.distances[static_cast<std::size_t>(i)];
       console.line(row + ',' + general_text(d.t2, 6) + ',' + general_text(d.spe, 6) + ',' + domain_word(model, d));
     }
@@ -55,16 +70,17 @@ void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Co
 
 void print_summary(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {
   std::vector<std::string> header{"batch", "rows"};
-  const bool measured = all.front().prediction.residuals.cols() > 0;
+  const bool measured = any_measured(all);
   for (const std::string& error : model.errors)
     if (measured) header.insert(header.end(), {"S " + error, "largest " + error});
   header.insert(header.end(), {"beyond 95 %", "beyond 99 %"});
   Table table(header);
   for (const auto& [batch, p] : all) {
     std::vector<std::string> row{batch->name, std::to_string(batch->rows())};
-    for (Index e = 0; e < p.residuals.cols(); ++e) {
-      row.push_back(fixed_text(p.S_um(e), 2));
-      row.push_back(fixed_text(p.residuals.col(e).cwiseAbs().maxCoeff(), 2));
+    for (Index e = 0; e < model.model.errors() && measured; ++e) {
+      const bool own = p.residuals.cols() > 0;
+      row.push_back(own ? fixed_text(p.S_um(e), 2) : "-");
+      row.push_back(own ? fixed_text(largest(p.residuals.col(e)), 2) : "-");
     }
     row.push_back(fixed_text(100 * p.share_beyond(model.domain, 95), 1) + " %");
     row.push_back(fixed_text(100 * p.share_beyond(model.domain, 99), 1) + " %");
@@ -74,7 +90,10 @@ void print_summary(const TrainedModel& model, const std::vector<Predicted>& all,
 }
 
 Json to_document(const TrainedModel& model, const std::vector<Predicted>& all) {
-  Json document{{"format", "thermfit-prediction/1"}, {"errors", model.errors}, {"batches", Json::array()}};
+  Json document{{"format", "thermfit-prediction/1"},
+                {"errors", model.errors},
+                {"error_reference", name(model.error_reference)},
+                {"batches", Json::array()}};
   for (const auto& [batch, p] : all) {
     Json one{{"batch", batch->name}, {"rows", batch->rows()}, {"predicted_um", to_json(p.errors)}};
     if (p.residuals.cols() > 0) one["S_um"] = to_json(p.S_um);
@@ -90,13 +109,16 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   if (words.size() < 2) throw UsageError("predict takes a model file and at least one batch");
   if (!begins_as_json(words[0]) && std::any_of(words.begin() + 1, words.end(), begins_as_json))
     throw UsageError("'" + words[0] + "' is no model file; MODEL.json comes first, then the batches");
-  const TrainedModel model = load_model(words[0]);
+  TrainedModel model = load_model(words[0]);
+  model.error_reference = error_reference(arguments, model.error_reference);
   CsvOptions options = csv_options(arguments);
   if (options.temperatures.empty()) options.temperatures = model.temperatures;
   if (options.errors.empty()) options.errors = model.errors;
   options.errors_may_lack = true;
+  if (!options.inputs) options.inputs = std::vector<std::string>{};
   const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
   note_faults(campaign, model.reference, console);
+  note_starts(campaign, model.error_reference, false, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
   if (const auto path = output_path(arguments)) console.write_to(*path);
@@ -122,6 +144,7 @@ Exit run_predict(const Arguments& arguments, Console& console) {
 
 Command predict_command() {
   std::vector<Option> options = campaign_options();
+  options.push_back(error_reference_option());
   append(options, {{"--summary", "", "one line a batch instead of every row", 0, false},
                    {"--limit", "UM", "exit 1 when S of a batch is above", 0, false},
                    {"--json", "", "thermfit-prediction/1 instead of CSV", 0, false},

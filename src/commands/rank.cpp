@@ -2,6 +2,7 @@
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
+#include "options/error_reference.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
 #include "thermfit/io/json/node.hpp"
@@ -29,7 +30,7 @@ struct Ranking {
 
 std::vector<Ranking> rank_all(const Campaign& campaign, const Arguments& arguments, Index count) {
   const bool fcgr = arguments.choice("--rule", {"correlation", "fcgr"}, "correlation") == "fcgr";
-  std::vector<Observations<>> batches = observe(campaign, temperature_reference(arguments));
+  std::vector<Observations<>> batches = observe(campaign, temperature_reference(arguments), error_reference(arguments));
   if (batches.size() > 1) {
     batches.push_back(merged(batches));
     batches.back().name = "all";
@@ -43,13 +44,17 @@ std::vector<Ranking> rank_all(const Campaign& campaign, const Arguments& argumen
 
 Exit run_rank(const Arguments& arguments, Console& console) {
   const Campaign campaign = learning_campaign(arguments, console, temperature_reference(arguments));
+  note_starts(campaign, error_reference(arguments), true, console);
   const Index count = require_points(arguments, campaign, campaign.front().temperatures.count());
   const std::vector<std::string>& names = campaign.front().temperatures.names;
   const std::vector<std::string>& errors = campaign.front().errors.names;
   const std::vector<Ranking> rankings = rank_all(campaign, arguments, count);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json")) {
-    Json document{{"format", "thermfit-rank/1"}, {"errors", errors}, {"batches", Json::array()}};
+    Json document{{"format", "thermfit-rank/1"},
+                  {"errors", errors},
+                  {"error_reference", name(error_reference(arguments))},
+                  {"batches", Json::array()}};
     for (const Ranking& ranking : rankings) {
       Json points = Json::array();
       for (const Index p : ranking.points)
@@ -60,6 +65,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
     console.line(document.dump(1));
     return Exit::done;
   }
+  const ErrorReference reference = error_reference(arguments);
   std::vector<std::string> header{"batch"};
   for (Index k = 1; k <= count; ++k) header.push_back(std::to_string(k));
   Table table(header);
@@ -73,8 +79,9 @@ Exit run_rank(const Arguments& arguments, Console& console) {
     }
     table.add(row);
   }
-  console.print(
-      wrap("Temperature points, most sensitive first, with their correlation with " + name_list(errors) + ":", 80, 0));
+  console.print(wrap("Temperature points, most sensitive first, with their correlation with " + name_list(errors) +
+                         (reference == ErrorReference::recorded ? "" : ", " + in_words(reference)) + ":",
+                     80, 0));
   console.print(table.text());
   return Exit::done;
 }
@@ -84,6 +91,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
 Command rank_command() {
   std::vector<Option> options = campaign_options();
   options.push_back(absolute_option());
+  options.push_back(error_reference_option());
   append(options, {{"--rule", "RULE", "'correlation' (default) or 'fcgr'", 0, false},
                    {"--points", "K", "show the first K (default: all)", 0, false},
                    {"--json", "", "thermfit-rank/1 instead of a table", 0, false},

@@ -3,6 +3,7 @@
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
 #include "options/campaign_options.hpp"
+#include "options/error_reference.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
 #include "report/study_json.hpp"
@@ -64,7 +65,9 @@ Exit judge(const StudyReport& report, const Arguments& arguments, Console& conso
 Exit run_study(const Arguments& arguments, Console& console) {
   StudyReport report;
   report.reference = temperature_reference(arguments);
+  report.error_reference = error_reference(arguments);
   const Campaign campaign = learning_campaign(arguments, console, report.reference);
+  note_starts(campaign, report.error_reference, true, console);
   StudyOptions options;
   options.points = require_points(arguments, campaign, 2);
   options.most_points = arguments.integer("--most-points", 1, 10000).value_or(0);
@@ -78,7 +81,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
     report.rows.push_back(batch.rows());
   }
   find_card(campaign, report);
-  report.study = study(observe(campaign, report.reference), options);
+  report.study = study(observe(campaign, report.reference, report.error_reference), options);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.print(study_json(report));
@@ -92,6 +95,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
 Command study_command() {
   std::vector<Option> options = campaign_options();
   options.push_back(absolute_option());
+  options.push_back(error_reference_option());
   append(options, fit_option_table());
   append(options, {{"--points", "K", "temperature points of every batch's model, or 'all' (default 2)", 0, false},
                    {"--most-points", "K", "the sweep stops there (default: all points)", 0, false},

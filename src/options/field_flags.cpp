@@ -31,6 +31,7 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, missing, "--missing"),
       THERMFIT_FLAG(CsvOptions, max_errors, "--max-errors"),
       THERMFIT_FLAG(TrainingPlan, row_wise, "thermfit fit --row-wise"),
+      THERMFIT_FLAG(TrainingPlan, error_reference, "--error-reference"),
       THERMFIT_FLAG(OutputsOptions, room, "--ambient"),
       {"pair_campaigns::sim", "--sim"},  // an argument of that function
   };

@@ -47,8 +47,8 @@ Json batch_json(const CheckedBatch& one) {
   for (const Finding& found : one.findings)
     findings.push_back({{"rule", rule_name(found.rule)},
                         {"channel", found.channel},
-                        {"first_row", found.first_row + 1},
-                        {"last_row", found.last_row + 1},
+                        {"first_row", batch.number_of(found.first_row)},
+                        {"last_row", batch.number_of(found.last_row)},
                         {"figure", number(found.figure)},
                         {"limit", number(found.limit)},
                         {"unit", found.unit},

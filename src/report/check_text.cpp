@@ -14,9 +14,9 @@
 namespace thermfit::cli {
 namespace {
 
-std::string rows_text(const Finding& one) {
-  const std::string first = std::to_string(one.first_row + 1);
-  return one.first_row == one.last_row ? first : first + "-" + std::to_string(one.last_row + 1);
+std::string rows_text(const Finding& one, const Batch& batch) {
+  const std::string first = std::to_string(batch.number_of(one.first_row));
+  return one.first_row == one.last_row ? first : first + "-" + std::to_string(batch.number_of(one.last_row));
 }
 
 std::string range_text(const Channels& channels) {
@@ -118,10 +118,10 @@ std::string every_finding(const std::vector<CheckedBatch>& checked) {
   std::string notes;
   for (const auto& [batch, found] : checked)
     for (const Finding& one : found) {
-      table.add({batch.name, one.channel, std::string(rule_name(one.rule)), rows_text(one), general_text(one.figure, 4),
-                 general_text(one.limit, 4), one.unit});
+      table.add({batch.name, one.channel, std::string(rule_name(one.rule)), rows_text(one, batch),
+                 general_text(one.figure, 4), general_text(one.limit, 4), one.unit});
       notes += wrap("  " + batch.name + ' ' + one.channel + (one.first_row == one.last_row ? ", row " : ", rows ") +
-                        rows_text(one) + ": " + with_flags(one.note),
+                        rows_text(one, batch) + ": " + with_flags(one.note),
                     80, 4);
     }
   return table.text() + '\n' + notes + '\n';
@@ -138,10 +138,13 @@ std::string grouped_findings(const std::vector<CheckedBatch>& checked, const std
   Remarks remarks;
   for (const FindingGroup& group : groups) {
     const Finding& worst = *group.worst().finding;
-    std::vector<std::string> row{
-        group.channel,    std::string(rule_name(group.rule)), std::to_string(group.places.size()),
-        rows_text(worst), general_text(worst.figure, 4),      general_text(worst.limit, 4),
-        worst.unit};
+    std::vector<std::string> row{group.channel,
+                                 std::string(rule_name(group.rule)),
+                                 std::to_string(group.places.size()),
+                                 rows_text(worst, checked[group.worst().batch].batch),
+                                 general_text(worst.figure, 4),
+                                 general_text(worst.limit, 4),
+                                 worst.unit};
     if (several) row.insert(row.begin() + 3, {std::to_string(group.batches), checked[group.worst().batch].batch.name});
     table.add(row);
     const std::string rule(rule_name(group.rule));

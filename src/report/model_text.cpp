@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "cli/table.hpp"
+#include "options/error_reference.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 
@@ -64,6 +65,15 @@ void print_substitutes(const TrainedModel& m, Console& console) {
   console.print(table.text(2));
 }
 
+/// What a model's intercept means where it is no probe's zero.
+const char* intercept_in_words(ErrorReference reference) {
+  return reference == ErrorReference::batch
+             ? "The intercept is each batch's own: predictions are changes, 0 at rise 0, as the machine's corrections "
+               "are since its datum."
+             : "The errors are 0 at rise 0; the intercept is what the fit leaves there, and drops out at a datum, from "
+               "which the machine's corrections count as these errors do from their start.";
+}
+
 }  // namespace
 
 std::string reference_in_words(TemperatureReference reference) {
@@ -83,7 +93,9 @@ std::string model_title(const TrainedModel& m) {
 }
 
 std::string model_equation(const TrainedModel& m, Index error) {
-  std::string text = m.errors[static_cast<std::size_t>(error)] + " = " + fixed_text(m.model.intercept(error), 3);
+  const bool own = m.error_reference == ErrorReference::batch;
+  std::string text = m.errors[static_cast<std::size_t>(error)] + " = " +
+                     (own ? "own intercept" : fixed_text(m.model.intercept(error), 3));
   for (Index i = 0; i < m.model.sensors(); ++i) {
     const double c = m.model.coefficients(i, error);
     text += (c < 0 ? " - " : " + ") + fixed_text(c < 0 ? -c : c, 3) + ' ' + m.temperatures[static_cast<std::size_t>(i)];
@@ -94,7 +106,12 @@ std::string model_equation(const TrainedModel& m, Index error) {
 void print_model(const TrainedModel& m, Console& console) {
   console.print(wrap(console.strong(model_title(m)), 80, 2));
   for (Index j = 0; j < m.model.errors(); ++j) console.print(wrap("  " + model_equation(m, j), 80, 6));
-  console.line("  errors in um; " + reference_in_words(m.reference) + "\n");
+  const bool recorded = m.error_reference == ErrorReference::recorded;
+  console.print(wrap(
+      "  errors in um" + (recorded ? "" : ", " + in_words(m.error_reference)) + "; " + reference_in_words(m.reference),
+      80, 2));
+  if (!recorded) console.print(wrap(std::string("  ") + intercept_in_words(m.error_reference), 80, 2));
+  console.line();
   print_points(m, console);
   print_components(m, console);
 
@@ -112,8 +129,9 @@ void print_model(const TrainedModel& m, Console& console) {
                       (m.degrees_of_freedom > 0 ? fixed_text(m.residual_deviation_um(j), 2) + " um" : "-");
             return text;
           }() +
-          ", " + std::to_string(m.degrees_of_freedom) + " degrees of freedom; condition number of the " +
-          "standardised temperatures " + general_text(m.condition_number, 3) + ".",
+          (recorded ? "" : ", errors " + in_words(m.error_reference)) + ", " + std::to_string(m.degrees_of_freedom) +
+          " degrees of freedom; condition number of the " + "standardised temperatures " +
+          general_text(m.condition_number, 3) + ".",
       80, 2));
   console.print(wrap("A new sample is foreign to this model when T2 exceeds " + general_text(m.domain.t2_limit_95, 3) +
                          " (95 %) or " + general_text(m.domain.t2_limit_99, 3) + " (99 %)" +

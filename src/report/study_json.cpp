@@ -73,6 +73,7 @@ std::string study_json(const StudyReport& r) {
   Json document{{"format", "thermfit-study/1"},
                 {"tool_version", THERMFIT_VERSION},
                 {"reference", r.reference == TemperatureReference::rise ? "rise" : "absolute"},
+                {"error_reference", name(r.error_reference)},
                 {"temperatures", r.temperatures},
                 {"errors", r.errors},
                 {"points", r.study.options.points},

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/table.hpp"
+#include "options/error_reference.hpp"
 #include "options/field_flags.hpp"
 #include "report/model_text.hpp"
 #include "thermfit/number.hpp"
@@ -73,6 +74,7 @@ class ErrorSection {
     std::string text = method_title(r_.study.methods.front()) + ", " + std::to_string(r_.study.options.points) +
                        " points: S_mean " + fixed_text(ours->per_model.S_mean, 2) + " um, S_std " +
                        fixed_text(ours->per_model.S_std, 2) + " um for " + error_ +
+                       (r_.error_reference == ErrorReference::recorded ? "" : " " + in_words(r_.error_reference)) +
                        (r_.study.options.own_batch ? " over all batches" : " on batches a model was not made from");
     if (const StudiedMethod<>* base = baseline())
       if (const Robustness<>* theirs = figures(*base)) {
@@ -279,10 +281,12 @@ void print_study(const StudyReport& report, Console& console) {
   for (const Index n : report.rows) rows += n;
   std::string errors;
   for (const std::string& error : report.errors) errors += (errors.empty() ? "" : ", ") + error;
-  console.print(wrap("Study of " + std::to_string(report.batches.size()) + " batches, " + std::to_string(rows) +
-                         " rows, " + std::to_string(report.temperatures.size()) + " temperature points, error " +
-                         errors + "; " + reference_in_words(report.reference) + ".",
-                     80, 0));
+  console.print(
+      wrap("Study of " + std::to_string(report.batches.size()) + " batches, " + std::to_string(rows) + " rows, " +
+               std::to_string(report.temperatures.size()) + " temperature points, error " + errors +
+               (report.error_reference == ErrorReference::recorded ? "" : " " + in_words(report.error_reference)) +
+               "; " + reference_in_words(report.reference) + ".",
+           80, 0));
   if (report.card) {
     const std::string origin = report.card->origin == "simulated" ? "These data are simulated: " : "Measured: ";
     console.print(wrap(origin + report.card->title + ". " + report.card->remark, 80, 0));

@@ -9,6 +9,7 @@
 #include "cli/console.hpp"
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/batch/campaign_card.hpp"
+#include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/robustness/study.hpp"
 
@@ -18,6 +19,7 @@ namespace thermfit::cli {
 struct StudyReport {
   Study<> study;
   TemperatureReference reference = TemperatureReference::rise;
+  ErrorReference error_reference = ErrorReference::recorded;
   std::vector<std::string> temperatures, errors, batches;
   std::vector<Index> rows;           ///< per batch
   std::optional<CampaignCard> card;  ///< what the data's folder says of itself

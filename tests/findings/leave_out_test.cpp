@@ -101,6 +101,24 @@ TEST_CASE("a jump leaves out the shorter side of its batch", "[findings]") {
   CHECK(left.rows[4].back() == 78);
 }
 
+TEST_CASE("rises count from the first row also where it is left out, from a bad reading never", "[findings]") {
+  Campaign campaign = vcenter55();
+  const Batch good = campaign[3];
+  campaign[3].temperatures.values(0, 0) += 7;
+  const LeaveOut left = leave_out_of(campaign);
+  REQUIRE(left.rows[3] == std::vector<Index>{0});
+  const Batch kept = without(campaign, left)[3];
+  CHECK(kept.number_of(0) == 2);
+  REQUIRE(kept.first_degC.size() == good.temperatures.count());
+  CHECK(std::abs(kept.first_degC(0) - good.temperatures.values(0, 0)) < .5);
+  CHECK(kept.first_degC(1) == good.temperatures.values(0, 1));
+  LeaveOut also = left;
+  also.temperatures = {good.temperatures.names[0]};
+  const Batch without_T1 = without(campaign, also)[3];
+  CHECK(without_T1.first_degC.size() == without_T1.temperatures.count());
+  CHECK(without_T1.first_degC(0) == good.temperatures.values(0, 1));
+}
+
 TEST_CASE("what is worth knowing only leaves out nothing", "[findings]") {
   Campaign campaign = vcenter55();
   temperature(campaign[0], 6) = temperature(campaign[0], 1);  // collinear

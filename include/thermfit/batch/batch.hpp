@@ -29,15 +29,22 @@ struct Channels {
 /// Inputs keep the unit of their column. Every member has rows() rows, except that `time_s` may be empty: a batch
 /// without a clock can be fitted, but not simulated.
 struct Batch {
-  std::string name;        ///< file stem or value of the batch column, e.g. "K01"
-  std::string source;      ///< path it was read from; empty when made in memory
-  std::string digest;      ///< SHA-256 of its numbers, hex; empty when made in memory
-  Vector time_s;           ///< strictly increasing; empty when the data have no time
-  Channels temperatures;   ///< degC, absolute
-  Channels errors;         ///< um, the responses
-  Channels inputs;         ///< known inputs: spindle_rpm, feed_mm_min, coolant, …
-  Index dropped_rows = 0;  ///< rows the reader left out because a value was missing (MissingValues::drop)
-  Index held_values = 0;   ///< missing values replaced by the last one of their channel (MissingValues::hold)
+  std::string name;                ///< file stem or value of the batch column, e.g. "K01"
+  std::string source;              ///< path it was read from; empty when made in memory
+  std::string digest;              ///< SHA-256 of its numbers, hex; empty when made in memory
+  Vector time_s;                   ///< strictly increasing; empty when the data have no time
+  Channels temperatures;           ///< degC, absolute
+  Channels errors;                 ///< um, the responses
+  Channels inputs;                 ///< known inputs: spindle_rpm, feed_mm_min, coolant, …
+  Index dropped_rows = 0;          ///< rows the reader left out because a value was missing (MissingValues::drop)
+  Index held_values = 0;           ///< missing values replaced by the last one of their channel (MissingValues::hold)
+  std::vector<Index> row_numbers;  ///< where rows were left out: the number of each in its file, from 1; else empty
+  Vector first_degC;  ///< where the first row was left out: its temperatures, NaN where there was none; else empty
+
+  /// Number in its file of a row, from 1. Does not allocate.
+  Index number_of(Index row) const {
+    return row_numbers.empty() ? row + 1 : row_numbers[static_cast<std::size_t>(row)];
+  }
 
   /// Number of samples, from whichever member has any. Does not allocate.
   Index rows() const {

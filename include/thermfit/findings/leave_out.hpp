@@ -3,12 +3,16 @@
 /// What findings leave of a campaign: the rows, points and batches that a model should not be made from, and why.
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/batch/kept_rows.hpp"
 #include "thermfit/findings/campaign_findings.hpp"
+#include "thermfit/findings/series_scale.hpp"
+#include "thermfit/statistics/course_start.hpp"
 
 namespace thermfit {
 
@@ -166,11 +170,6 @@ inline LeaveOut leave_out(const Campaign& campaign, const CampaignFindings& find
 
 namespace detail {
 
-inline void keep_rows(Matrix& values, const std::vector<Index>& kept) {
-  for (std::size_t i = 0; i < kept.size(); ++i) values.row(static_cast<Index>(i)) = values.row(kept[i]);
-  values.conservativeResize(static_cast<Index>(kept.size()), values.cols());
-}
-
 inline void keep_others(Channels& channels, const std::vector<std::string>& names) {
   Index kept = 0;
   for (Index c = 0; c < channels.count(); ++c) {
@@ -183,9 +182,29 @@ inline void keep_others(Channels& channels, const std::vector<std::string>& name
   channels.values.conservativeResize(channels.values.rows(), kept);
 }
 
+inline void keep_firsts(Batch& batch, const std::vector<std::string>& names) {
+  if (batch.first_degC.size() == 0) return;
+  Index kept = 0;
+  for (Index c = 0; c < batch.temperatures.count(); ++c)
+    if (std::find(names.begin(), names.end(), batch.temperatures.names[static_cast<std::size_t>(c)]) == names.end())
+      batch.first_degC(kept++) = batch.first_degC(c);
+  batch.first_degC.conservativeResize(kept);
+}
+
+/// What a rise of `kept` counts from where the first reading of `whole` is a fault.
+inline void take_back_first(Batch& kept, const Batch& whole, const Finding& fault) {
+  const Index point = whole.temperatures.find(fault.channel);
+  if (point < 0 || fault.first_row > 0 || kept.first_degC.size() == 0) return;
+  const Series series(whole.temperatures.values.col(point));
+  const bool taken_back = fault.last_row == 0 && series.size() > 4 && series.rows[4] == 4;
+  kept.first_degC(point) = taken_back ? course_taken_back(series.values) : std::nan("");
+}
+
 }  // namespace detail
 
-/// The campaign without what `left` names; Batch::dropped_rows counts the rows that went. Allocates.
+/// The campaign without what `left` names; Batch::dropped_rows counts the rows that went (kept_rows). A rise whose
+/// first reading is left out counts from where the readings that follow come from (course_taken_back), or from nothing
+/// where more than that one is. Allocates.
 inline Campaign without(Campaign campaign, const LeaveOut& left) {
   Campaign kept;
   for (std::size_t b = 0; b < campaign.size(); ++b) {
@@ -195,14 +214,13 @@ inline Campaign without(Campaign campaign, const LeaveOut& left) {
       std::vector<Index> rows;
       for (Index row = 0; row < batch.rows(); ++row)
         if (!std::binary_search(left.rows[b].begin(), left.rows[b].end(), row)) rows.push_back(row);
-      batch.dropped_rows += batch.rows() - static_cast<Index>(rows.size());
-      for (Channels* channels : {&batch.temperatures, &batch.errors, &batch.inputs})
-        if (channels->count() > 0) detail::keep_rows(channels->values, rows);
-      if (batch.has_time()) {
-        for (std::size_t i = 0; i < rows.size(); ++i) batch.time_s(static_cast<Index>(i)) = batch.time_s(rows[i]);
-        batch.time_s.conservativeResize(static_cast<Index>(rows.size()));
-      }
+      const Batch whole = batch;
+      batch = kept_rows(std::move(batch), rows);
+      for (const LeaveOut::Reason& reason : left.reasons)
+        if (reason.batch == b && reason.what == LeaveOut::What::rows)
+          detail::take_back_first(batch, whole, reason.finding);
     }
+    detail::keep_firsts(batch, left.temperatures);
     detail::keep_others(batch.temperatures, left.temperatures);
     detail::keep_others(batch.errors, left.errors);
     kept.push_back(std::move(batch));

@@ -8,6 +8,7 @@
 
 #include "thermfit/fit/fit.hpp"
 #include "thermfit/fit/training_domain.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/model/trained_model.hpp"
 #include "thermfit/moments/observations.hpp"
 #include "thermfit/version.hpp"
@@ -21,6 +22,7 @@ struct TrainingPlan {
   std::vector<Index> points;        ///< temperature columns, in coefficient order; empty: all
   std::string selection = "given";  ///< how they were chosen, for the record
   TemperatureReference reference = TemperatureReference::rise;  ///< what the model's temperatures are measured from
+  ErrorReference error_reference = ErrorReference::recorded;    ///< what the errors are measured from
   bool row_wise = false;  ///< QR and NIPALS on all rows instead of moments, for ill-conditioned data
 };
 
@@ -81,31 +83,64 @@ TrainedModel trained_model(const LinearFit<Scalar>& fit, const Moments<Scalar>& 
 
 namespace detail {
 
-/// The plan's fit, and the moments of the plan's points in every batch.
+/// The plan's fit, the moments of the plan's points it is made of, and those of all rows, about no own means.
 template <typename Scalar>
 struct PlannedFit {
   LinearFit<Scalar> fit;
-  Moments<Scalar> all;
+  Moments<Scalar> fitted, seen;
 };
+
+/// A fit on batches about their own means, as a model on rises: without intercept, 0 at rise 0; means and the variance
+/// of its scores those of all rows, between batches too.
+template <typename Scalar>
+void count_from_zero(LinearFit<Scalar>& fit, const Moments<Scalar>& seen) {
+  Standardisation<Scalar>& channels = fit.channels;
+  fit.model.intercept.setZero();
+  channels.temperature_mean = seen.temperature_mean();
+  channels.error_mean = fit.model.coefficients.transpose() * channels.temperature_mean;
+  if (fit.components == 0) return;
+  const MatrixX<Scalar> scores = channels.temperature_scale.cwiseInverse().asDiagonal() * fit.latent.rotations;
+  fit.score_variance = (scores.transpose() * seen.temperature_products() * scores).diagonal() /
+                       static_cast<Scalar>(std::max<Index>(1, seen.rows() - 1));
+}
 
 template <typename Scalar>
 PlannedFit<Scalar> fit_plan(const Campaign& campaign, const TrainingPlan& plan, const std::vector<Index>& points) {
   const Batch& first = campaign.front();
+  const bool own_means = plan.error_reference == ErrorReference::batch;
   std::vector<Moments<Scalar>> batches;
   std::vector<Observations<Scalar>> rows;
+  PlannedFit<Scalar> planned;
   for (const Batch& batch : campaign) {
     if (batch.temperatures.names != first.temperatures.names || batch.errors.names != first.errors.names) {
       throw Error("batch " + batch.name, "other channels than batch " + first.name,
                   "the same temperatures and errors in every batch");
     }
-    Observations<Scalar> seen = observe<Scalar>(batch, plan.reference);
+    Observations<Scalar> seen = observe<Scalar>(batch, plan.reference, plan.error_reference);
     batches.push_back(seen.moments.subset(points));
+    if (own_means) {
+      const Batch again = referenced<Lazy<double, Scalar>>(batch, plan.error_reference);
+      planned.seen.merge(observe<Scalar>(again, plan.reference).moments.subset(points));
+    }
     if (plan.row_wise) rows.push_back(std::move(seen));
   }
-  if (!plan.row_wise) return {thermfit::fit(plan.method, batches, plan.options), merged(batches)};
-  const Observations<Scalar> all = merged(rows);
-  const MatrixX<Scalar> chosen = all.temperatures(Eigen::all, points);
-  return {thermfit::fit(plan.method, chosen, all.errors, plan.options), merged(batches)};
+  planned.fitted = merged(batches);
+  if (!own_means) planned.seen = planned.fitted;
+  if (!plan.row_wise) {
+    planned.fit = thermfit::fit(plan.method, batches, plan.options);
+  } else {
+    const Observations<Scalar> all = merged(rows);
+    const MatrixX<Scalar> chosen = all.temperatures(Eigen::all, points);
+    planned.fit = thermfit::fit(plan.method, chosen, all.errors, plan.options);
+    const Index taken = planned.fit.rows - planned.fitted.rows();  // by own means
+    if (taken > 0) {
+      planned.fit.degrees_of_freedom -= static_cast<Scalar>(taken);
+      planned.fit.residual_deviation_um *=
+          std::sqrt(static_cast<Scalar>(planned.fit.rows - 1) / static_cast<Scalar>(planned.fitted.rows() - 1));
+    }
+  }
+  if (own_means) count_from_zero(planned.fit, planned.seen);
+  return planned;
 }
 
 /// How far the whole model may be from the substitute while no sensor is lost: d' C d of the differences d of their
@@ -137,10 +172,11 @@ TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {}) {
   std::vector<Index> points = plan.points;
   for (Index p = 0; plan.points.empty() && p < first.temperatures.count(); ++p) points.push_back(p);
   const detail::PlannedFit<Scalar> fitted = detail::fit_plan<Scalar>(campaign, plan, points);
-  TrainedModel trained = trained_model(fitted.fit, fitted.all);
+  TrainedModel trained = trained_model(fitted.fit, fitted.seen);
   trained.method = name(plan.method);
   trained.selection = plan.selection;
   trained.reference = plan.reference;
+  trained.error_reference = plan.error_reference;
   for (const Index point : points) {
     trained.temperatures.push_back(first.temperatures.names[static_cast<std::size_t>(point)]);
   }
@@ -148,9 +184,9 @@ TrainedModel train(const Campaign& campaign, const TrainingPlan& plan = {}) {
   trained.envelope = sensor_envelope<Scalar>(campaign, trained.temperatures);
   const FitOptions same = settled(plan.options, fitted.fit);
   trained.substitutes =
-      substitute_models(fitted.all, [&](const Moments<Scalar>& m) { return fit(plan.method, m, same); });
+      substitute_models(fitted.fitted, [&](const Moments<Scalar>& m) { return fit(plan.method, m, same); });
   for (SubstituteModel& substitute : trained.substitutes)
-    substitute.agreement_um = detail::agreement(trained, substitute, fitted.all);
+    substitute.agreement_um = detail::agreement(trained, substitute, fitted.seen);
   for (const Batch& batch : campaign) trained.batches.push_back({batch.name, batch.rows(), batch.digest});
   return trained;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace thermfit {
 /// What a model says of one batch.
 struct BatchPrediction {
   Matrix errors;                            ///< rows x errors, um
-  Matrix residuals;                         ///< prediction minus measurement, um; no columns where not measured
-  Vector S_um;                              ///< eq. (10) per error; empty where not measured
+  Matrix residuals;                         ///< prediction minus measurement, um, NaN in rows without one; no columns
+                                            ///< where an error was measured in no row
+  Vector S_um;                              ///< eq. (10) per error over the rows measured; empty where not measured
   std::vector<DomainDistance<>> distances;  ///< per row
 
   /// Share of rows beyond the 95 % or 99 % limit of `domain`, 0 … 1.
@@ -26,10 +28,14 @@ struct BatchPrediction {
 };
 
 /// Temperatures of `batch` as `model` wants them: its points, in its order, as rise or absolute; rows x points. Throws
-/// Error on a point the batch lacks, naming those there are. Allocates the result.
+/// Error on a point the batch lacks, naming those there are, and on a rise without a first reading, unless errors have
+/// another reference than recorded: then rises count from the first row that is there. Allocates the result.
 template <typename Scalar = double>
 MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
-  const MatrixX<Scalar> all = model_temperatures<Scalar>(batch, model.reference);
+  if (model.reference == TemperatureReference::rise && model.error_reference == ErrorReference::recorded)
+    require_first_readings(batch, model.temperatures);
+  const bool later = !lacks_first_reading(batch).empty() && model.error_reference != ErrorReference::recorded;
+  const MatrixX<Scalar> all = model_temperatures<Scalar>(later ? from_first_row_there(batch) : batch, model.reference);
   MatrixX<Scalar> chosen(all.rows(), static_cast<Index>(model.temperatures.size()));
   for (std::size_t i = 0; i < model.temperatures.size(); ++i) {
     const Index column = batch.temperatures.find(model.temperatures[i]);
@@ -44,8 +50,33 @@ MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
   return chosen;
 }
 
-/// Prediction, residuals where the batch holds all of the model's errors, and distances to the training domain,
-/// computed in Scalar. Errors as model_inputs. Allocates the result.
+namespace detail {
+
+/// Prediction minus measurement of one error, NaN where there is none, as `reference` counts what was measured. Until
+/// the row where it starts it has moved by what is predicted from `at_start` on: where it begins later than rises do.
+template <typename Scalar>
+VectorX<Scalar> residuals_of(const VectorX<Scalar>& predicted, Scalar at_start, const Vector& measured,
+                             ErrorReference reference) {
+  VectorX<Scalar> residuals = predicted - lazy<Scalar>(measured).template cast<Scalar>();
+  if (reference == ErrorReference::recorded) return residuals;
+  Scalar sum = 0, count = 0;
+  for (Index row = 0; row < residuals.size(); ++row)
+    if (std::isfinite(residuals(row))) sum += residuals(row), ++count;
+  if (reference == ErrorReference::batch) {
+    residuals.array() -= count > 0 ? sum / count : Scalar(0);
+    return residuals;
+  }
+  const ErrorStart start = error_start(measured);
+  if (start.row < 0) return residuals;
+  residuals.array() += static_cast<Scalar>(start.value_um) - (predicted(start.row) - at_start);
+  return residuals;
+}
+
+}  // namespace detail
+
+/// Prediction, residuals where the batch holds readings of all of the model's errors, and distances to the training
+/// domain, computed in Scalar. Errors measured are counted as those of training, so that S has the same reference.
+/// Errors as model_inputs. Allocates the result.
 template <typename Scalar = double>
 BatchPrediction predict(const TrainedModel& trained, const Batch& batch) {
   const MatrixX<Scalar> inputs = model_inputs<Scalar>(trained, batch);
@@ -57,18 +88,26 @@ BatchPrediction predict(const TrainedModel& trained, const Batch& batch) {
     const DomainDistance<Scalar> distance = domain.distance(inputs.row(i).transpose());
     result.distances.push_back({static_cast<double>(distance.t2), static_cast<double>(distance.spe)});
   }
-  MatrixX<Scalar> measured(inputs.rows(), static_cast<Index>(trained.errors.size()));
-  for (std::size_t e = 0; e < trained.errors.size(); ++e) {
-    const Index column = batch.errors.find(trained.errors[e]);
+  const bool rise = trained.reference == TemperatureReference::rise;
+  const Index errors = static_cast<Index>(trained.errors.size());
+  MatrixX<Scalar> residuals(inputs.rows(), errors);
+  VectorX<Scalar> S(errors);
+  for (Index e = 0; e < errors; ++e) {
+    const Index column = batch.errors.find(trained.errors[static_cast<std::size_t>(e)]);
     if (column < 0) return result;
-    measured.col(static_cast<Index>(e)) = detail::lazy<Scalar>(batch.errors.values).col(column).template cast<Scalar>();
+    const VectorX<Scalar> own =
+        detail::residuals_of<Scalar>(predicted.col(e), static_cast<Scalar>(rise ? trained.model.intercept(e) : 0),
+                                     batch.errors.values.col(column), trained.error_reference);
+    Scalar squares = 0;
+    Index measured = 0;
+    for (Index row = 0; row < own.size(); ++row)
+      if (std::isfinite(own(row))) squares += own(row) * own(row), ++measured;
+    if (measured == 0) return result;
+    residuals.col(e) = own;
+    S(e) = std::sqrt(squares / static_cast<Scalar>(measured - 1));
   }
-  const MatrixX<Scalar> residuals = predicted - measured;
   result.residuals = residuals.template cast<double>();
-  result.S_um = (residuals.colwise().squaredNorm() / static_cast<Scalar>(inputs.rows() - 1))
-                    .cwiseSqrt()
-                    .transpose()
-                    .template cast<double>();
+  result.S_um = S.template cast<double>();
   return result;
 }
 

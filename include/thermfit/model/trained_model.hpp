@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/model/latent_variables.hpp"
 #include "thermfit/model/linear_model.hpp"
@@ -36,6 +37,12 @@ struct TrainedModel {
   std::vector<std::string> temperatures;  ///< chosen points, in coefficient order
   std::vector<std::string> errors;        ///< responses, in coefficient order
   TemperatureReference reference = TemperatureReference::rise;  ///< what its temperatures are measured from
+  /// What its errors are measured from, in training and where they are compared with new ones.
+  ///
+  /// `start`: the intercept is what the fit leaves at rise 0, where these errors are 0 but for noise; a datum takes it
+  /// off, so that the machine gets what these errors count: the change since the datum. `batch`: every batch has an
+  /// intercept of its own, so that the model has none: it gives changes, 0 at rise 0.
+  ErrorReference error_reference = ErrorReference::recorded;
 
   LinearModel<> model;                       ///< raw units: um, um/K
   Matrix standardised_coefficients;          ///< sensors x errors
@@ -44,7 +51,8 @@ struct TrainedModel {
   Vector error_mean;                         ///< per error, um
   Vector error_scale;                        ///< per error, um
   LatentVariables<> latent;                  ///< PLS and PCR; empty for the others
-  Vector residual_deviation_um;              ///< per error, S of eq. (10) on the training rows
+  Vector residual_deviation_um;              ///< per error, S of eq. (10) on the training rows; of K own intercepts
+                                             ///< with divisor n - K
   Index degrees_of_freedom = 0;              ///< of the residuals, rounded
   double condition_number = 0;               ///< of the standardised temperatures
   TrainingDomain<> domain;                   ///< where it may be trusted

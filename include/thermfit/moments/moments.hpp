@@ -41,7 +41,7 @@ class Moments {
     add_rows(temperatures, errors);
   }
 
-  /// Rows seen.
+  /// Rows seen; of several batches about their own means, less one for each batch but the first.
   Index rows() const { return rows_; }
   /// Temperature points.
   Index temperatures() const { return temperatures_; }
@@ -106,6 +106,19 @@ class Moments {
     return result;
   }
 
+  /// The same rows about their own mean, in temperatures and errors: a batch whose intercept is a free number. All
+  /// means are 0. Merged with others of this kind there is no term between batches, and each further batch takes a
+  /// degree of freedom: K batches of n rows count as n - K + 1, so that a variance has the divisor n - K. Allocates the
+  /// result.
+  Moments about_own_mean() const {
+    Moments result = *this;
+    result.lowest_ -= mean_;
+    result.highest_ -= mean_;
+    result.mean_.setZero();
+    result.about_own_mean_ = true;
+    return result;
+  }
+
  private:
   using Rows = MatrixView<Scalar>;
 
@@ -148,6 +161,7 @@ class Moments {
 
   Index rows_ = 0;
   Index temperatures_ = 0;
+  bool about_own_mean_ = false;
   VectorX<Scalar> mean_, lowest_, highest_;
   MatrixX<Scalar> products_;
 };
@@ -188,6 +202,10 @@ void Moments<Scalar>::merge(const Moments& other) {
                 std::to_string(other.temperatures_) + " temperatures and " + std::to_string(other.errors()) + " errors",
                 std::to_string(temperatures_) + " and " + std::to_string(errors()) + ", as in those merged before");
   }
+  if (other.about_own_mean_ != about_own_mean_ && rows_ > 0)
+    throw Error("moments", "some about the mean of their batch, some not", "all of one kind");
+  about_own_mean_ = other.about_own_mean_;
+  const Index further = about_own_mean_ && rows_ > 0 ? 1 : 0;
   const Scalar total = static_cast<Scalar>(rows_ + other.rows_);
   const Scalar share = static_cast<Scalar>(other.rows_) / total;
   const VectorX<Scalar> step = other.mean_ - mean_;
@@ -196,7 +214,7 @@ void Moments<Scalar>::merge(const Moments& other) {
   mean_ += share * step;
   lowest_ = lowest_.cwiseMin(other.lowest_);
   highest_ = highest_.cwiseMax(other.highest_);
-  rows_ += other.rows_;
+  rows_ += other.rows_ - further;
 }
 
 template <typename Scalar>
@@ -208,6 +226,7 @@ Moments<Scalar> Moments<Scalar>::subset(const std::vector<Index>& points, const 
   }
   Moments result(static_cast<Index>(points.size()), static_cast<Index>(responses.size()));
   result.rows_ = rows_;
+  result.about_own_mean_ = about_own_mean_;
   result.mean_ = mean_(channels);
   result.lowest_ = lowest_(channels);
   result.highest_ = highest_(channels);

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/moments/moments.hpp"
 
 namespace thermfit {
@@ -19,7 +21,7 @@ struct Observations {
   Moments<Scalar> moments;       ///< of all its rows
 
   /// Whether the rows are kept, not only their moments.
-  bool has_rows() const { return moments.rows() == 0 || temperatures.rows() == moments.rows(); }
+  bool has_rows() const { return moments.rows() == 0 || temperatures.rows() >= moments.rows(); }
 };
 
 /// Rows and moments of temperatures (rows x points, K of rise or degC) and errors (rows x responses, um) under a name.
@@ -32,9 +34,35 @@ Observations<typename Temperatures::Scalar> observe(const Eigen::MatrixBase<Temp
   return result;
 }
 
-/// Rows and moments of a batch under `reference`. Throws Error on values that are not finite. Allocates copies.
+namespace detail {
+
+/// Of a batch whose errors are referenced() already.
+template <typename Scalar>
+Observations<Scalar> observe_about(const Batch& batch, ErrorReference error_reference) {
+  MatrixX<Scalar> temperatures = model_temperatures<Scalar>(batch, TemperatureReference::rise);
+  const bool own_mean = error_reference == ErrorReference::batch;
+  if (own_mean && temperatures.rows() > 0) {
+    const VectorX<Scalar> mean = temperatures.colwise().mean().transpose();
+    temperatures.rowwise() -= mean.transpose();
+  }
+  Observations<Scalar> seen =
+      observe(temperatures, detail::lazy<Scalar>(batch.errors.values).template cast<Scalar>(), batch.name);
+  if (own_mean) seen.moments = seen.moments.about_own_mean();
+  return seen;
+}
+
+}  // namespace detail
+
+/// Rows and moments of a batch under `reference`, errors as `error_reference` counts them (referenced()). With
+/// ErrorReference::batch temperatures and errors are both taken about their mean over the batch. Throws Error on values
+/// that are not finite, and on a rise without a first reading. Allocates copies.
 template <typename Scalar = double>
-Observations<Scalar> observe(const Batch& batch, TemperatureReference reference = TemperatureReference::rise) {
+Observations<Scalar> observe(const Batch& batch, TemperatureReference reference = TemperatureReference::rise,
+                             ErrorReference error_reference = ErrorReference::recorded) {
+  require_alike(reference, error_reference);
+  if (error_reference != ErrorReference::recorded)
+    return detail::observe_about<Scalar>(referenced<Lazy<double, Scalar>>(batch, error_reference), error_reference);
+  if (reference == TemperatureReference::rise) require_first_readings(batch, batch.temperatures.names);
   return observe(model_temperatures<Scalar>(batch, reference),
                  detail::lazy<Scalar>(batch.errors.values).template cast<Scalar>(), batch.name);
 }
@@ -42,9 +70,10 @@ Observations<Scalar> observe(const Batch& batch, TemperatureReference reference 
 /// observe() for every batch, in order.
 template <typename Scalar = double>
 std::vector<Observations<Scalar>> observe(const Campaign& campaign,
-                                          TemperatureReference reference = TemperatureReference::rise) {
+                                          TemperatureReference reference = TemperatureReference::rise,
+                                          ErrorReference error_reference = ErrorReference::recorded) {
   std::vector<Observations<Scalar>> result;
-  for (const Batch& batch : campaign) result.push_back(observe<Scalar>(batch, reference));
+  for (const Batch& batch : campaign) result.push_back(observe<Scalar>(batch, reference, error_reference));
   return result;
 }
 
@@ -59,13 +88,15 @@ Observations<Scalar> merged(const std::vector<Observations<Scalar>>& batches) {
     rows = rows && batch.has_rows();
   }
   if (!rows || all.moments.rows() == 0) return all;
-  all.temperatures.resize(all.moments.rows(), all.moments.temperatures());
-  all.errors.resize(all.moments.rows(), all.moments.errors());
   Index first = 0;
+  for (const Observations<Scalar>& batch : batches) first += batch.temperatures.rows();
+  all.temperatures.resize(first, all.moments.temperatures());
+  all.errors.resize(first, all.moments.errors());
+  first = 0;
   for (const Observations<Scalar>& batch : batches) {
-    all.temperatures.middleRows(first, batch.moments.rows()) = batch.temperatures;
-    all.errors.middleRows(first, batch.moments.rows()) = batch.errors;
-    first += batch.moments.rows();
+    all.temperatures.middleRows(first, batch.temperatures.rows()) = batch.temperatures;
+    all.errors.middleRows(first, batch.temperatures.rows()) = batch.errors;
+    first += batch.temperatures.rows();
   }
   return all;
 }

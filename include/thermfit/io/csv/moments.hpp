@@ -13,7 +13,7 @@ namespace thermfit {
 /// What remains of a batch when its rows have gone by.
 struct BatchMoments {
   std::string name;   ///< value of the batch column; empty without one
-  Vector first_degC;  ///< temperatures of its first row
+  Vector first_degC;  ///< temperatures of its first row, also where that is left out; NaN where it has none
   Moments<> moments;  ///< of all its rows: temperatures in degC or, as rises, in K; errors in um
 };
 
@@ -24,7 +24,8 @@ struct CsvMoments {
 };
 
 /// Reads a file of any size in constant memory: 256 rows a batch at a time become moments. With
-/// TemperatureReference::rise temperatures count from the first row of their batch. Throws Error as read_rows does.
+/// TemperatureReference::rise temperatures count from the first row of their batch. Throws Error as read_rows does, and
+/// on a rise without a first reading.
 template <typename Scalar = double>
 CsvMoments read_moments(const std::string& path, CsvOptions options = {},
                         TemperatureReference reference = TemperatureReference::rise) {
@@ -36,6 +37,7 @@ CsvMoments read_moments(const std::string& path, CsvOptions options = {},
   options.inputs = std::vector<std::string>{};
   CsvMoments result;
   std::vector<Growing> growing;
+  std::vector<Index> begins;
   std::map<std::string, std::size_t, std::less<>> index;
   std::size_t current = 0;
   const auto flush = [&](std::size_t b) {
@@ -49,7 +51,8 @@ CsvMoments read_moments(const std::string& path, CsvOptions options = {},
       current = found->second;
       if (fresh) {
         result.batches.push_back(
-            {std::string(row.batch), row.temperatures.transpose(), {row.temperatures.size(), row.errors.size()}});
+            {std::string(row.batch), row.first_degC.transpose(), {row.temperatures.size(), row.errors.size()}});
+        begins.push_back(row.number);
         growing.push_back(
             {MatrixX<Scalar>(block_rows, row.temperatures.size()), MatrixX<Scalar>(block_rows, row.errors.size()), 0});
       }
@@ -62,7 +65,14 @@ CsvMoments read_moments(const std::string& path, CsvOptions options = {},
   for (std::size_t b = 0; b < growing.size(); ++b) {
     flush(b);
     BatchMoments& batch = result.batches[b];
-    if (reference == TemperatureReference::rise) batch.moments = batch.moments.minus(batch.first_degC);
+    if (reference == TemperatureReference::absolute) continue;
+    Batch begun;
+    begun.source = path;
+    begun.temperatures.names = result.file.roles.temperatures;
+    begun.first_degC = batch.first_degC;
+    begun.row_numbers = {begins[b]};
+    require_first_readings(begun, begun.temperatures.names);
+    batch.moments = batch.moments.minus(batch.first_degC);
   }
   return result;
 }

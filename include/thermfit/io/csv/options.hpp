@@ -10,7 +10,7 @@ namespace thermfit {
 /// What to do with an empty cell, `NA`, `N/A`, `NaN` or `null` (any case) in a column that is used.
 enum class MissingValues {
   error,  ///< say how many there are and where the first is
-  drop,   ///< leave the row out
+  drop,   ///< leave the row out; rises still count from the first row, and rows keep their numbers
   hold,   ///< repeat the last value of the column in its batch
   keep    ///< NaN in the batch: for tools that look for faults
 };
@@ -25,7 +25,8 @@ struct CsvOptions {
   std::string time_unit;                           ///< for a time column that does not name its unit; empty: min
   std::vector<std::string> temperatures;           ///< empty: `T` and digits
   std::vector<std::string> errors;                 ///< empty: those of `X`, `Y`, `Z` that there are
-  bool errors_may_lack = false;                    ///< of `errors`, only those that a file has are read
+  bool errors_may_lack = false;                    ///< of `errors`, only those that a file has are read, and a cell
+                                                   ///< without a value is NaN, whatever `missing` says
   std::optional<std::vector<std::string>> inputs;  ///< absent: every other column of numbers
   std::string batch_column;                        ///< splits a file into batches by its value; empty: one batch
   MissingValues missing = MissingValues::error;    ///< what to do with a cell that has no value

@@ -28,7 +28,8 @@ namespace detail {
 /// Rows of one batch as they come, to become columns at the end.
 struct GrowingBatch {
   std::string key;
-  std::vector<double> time_s, values;
+  std::vector<double> time_s, values, first_degC;
+  std::vector<Index> numbers;  ///< of the rows in the file, from 1
   Index held_values = 0;
 };
 
@@ -71,10 +72,12 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
   while (reader.next(row)) {
     if (!current || current->key != row.batch) {
       const auto [found, fresh] = index.emplace(row.batch, batches.size());
-      if (fresh) batches.push_back({std::string(row.batch), {}, {}, 0});
+      if (fresh) batches.push_back({std::string(row.batch), {}, {}, {}, {}, 0});
       current = &batches[found->second];
+      if (fresh) current->first_degC.assign(row.first_degC.data(), row.first_degC.data() + row.first_degC.size());
     }
     current->held_values += row.held_values;
+    current->numbers.push_back(row.number);
     current->time_s.push_back(row.time_s);
     current->values.insert(current->values.end(), row.temperatures.data(), row.temperatures.data() + width);
   }
@@ -91,6 +94,9 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     batch.inputs = channels(roles.inputs, rows, roles.temperatures.size() + roles.errors.size(), width);
     batch.dropped_rows = reader.dropped_rows(rows.key);
     batch.held_values = rows.held_values;
+    if (rows.numbers.front() != 1)
+      batch.first_degC = Eigen::Map<const Vector>(rows.first_degC.data(), static_cast<Index>(rows.first_degC.size()));
+    if (rows.numbers.back() != static_cast<Index>(rows.numbers.size())) batch.row_numbers = std::move(rows.numbers);
     batch.digest = batch_digest(batch);
     reading.batches.push_back(std::move(batch));
     rows = {};
@@ -99,8 +105,8 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
 }
 
 /// Brings the channels of a batch into the order of the first one. Throws when a name is missing or surplus.
-inline void agree(const Channels& wanted, Channels& channels, const Batch& batch, const Batch& first,
-                  const std::string& kind, const std::string& option) {
+inline void agree(const Channels& wanted, Channels& channels, Batch& batch, const Batch& first, const std::string& kind,
+                  const std::string& option) {
   if (channels.names == wanted.names) return;
   std::vector<std::string> missing, surplus;
   for (const std::string& name : wanted.names)
@@ -116,10 +122,15 @@ inline void agree(const Channels& wanted, Channels& channels, const Batch& batch
                   {"the same in every batch: ", name_list(wanted.names)}, {"choose common ones with ", option});
   const Index rows = channels.values.rows();
   Channels ordered{wanted.names, Matrix(rows, channels.values.cols())};
+  const bool has_first = &channels == &batch.temperatures && batch.first_degC.size() > 0;
+  Vector first_degC = batch.first_degC;
   for (Index c = 0; c < wanted.count(); ++c) {
-    const double* from = channels.values.data() + rows * channels.find(wanted.names[static_cast<std::size_t>(c)]);
+    const Index there = channels.find(wanted.names[static_cast<std::size_t>(c)]);
+    const double* from = channels.values.data() + rows * there;
     std::copy(from, from + rows, ordered.values.data() + rows * c);
+    if (has_first) first_degC(c) = batch.first_degC(there);
   }
+  batch.first_degC = std::move(first_degC);
   channels = std::move(ordered);
 }
 

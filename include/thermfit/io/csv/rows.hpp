@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -17,13 +18,15 @@ namespace thermfit {
 struct CsvRow {
   /// The values of one role, a view; NaN where one is missing and MissingValues::keep is asked for.
   using Values = Eigen::Map<const Eigen::RowVectorXd>;
-  std::size_t line;        ///< in the file, from 1
-  std::string_view batch;  ///< value of the batch column; empty without one
-  double time_s;           ///< NaN without a clock
-  Values temperatures,     ///< degC
-      errors,              ///< um
-      inputs;              ///< as written
-  Index held_values = 0;   ///< values that were missing and are the last ones of their channel
+  std::size_t line;                        ///< in the file, from 1
+  std::string_view batch;                  ///< value of the batch column; empty without one
+  double time_s;                           ///< NaN without a clock
+  Values temperatures,                     ///< degC
+      errors,                              ///< um
+      inputs;                              ///< as written
+  Index held_values = 0;                   ///< values that were missing and are the last ones of their channel
+  Index number = 0;                        ///< in its batch, from 1, counting rows that were left out
+  Values first_degC = Values(nullptr, 0);  ///< temperatures of row 1 of its batch, NaN where it has none
 };
 
 /// What was met while reading one file.
@@ -77,7 +80,9 @@ class CsvRowReader {
       if (!detail::is_content(line)) continue;
       ++seen_rows_;
       if (!parser_.parse(line, lines_.line_number())) continue;
-      if (!enter_state() || !settle_missing() || !check_time()) continue;
+      if (!enter_state()) continue;
+      remember_first();
+      if (!settle_missing() || !check_time()) continue;
       ++file_.rows;
       const auto count = [](const auto& names) { return static_cast<Index>(names.size()); };
       const double* const values = cells_.values.data();
@@ -88,7 +93,9 @@ class CsvRowReader {
                         {values, count(roles.temperatures)},
                         {values + count(roles.temperatures), count(roles.errors)},
                         {values + count(roles.temperatures) + count(roles.errors), count(roles.inputs)},
-                        options_.missing == MissingValues::hold ? static_cast<Index>(cells_.missing.size()) : 0};
+                        options_.missing == MissingValues::hold ? static_cast<Index>(cells_.missing.size()) : 0,
+                        state_->rows,
+                        {state_->first_degC.data(), count(roles.temperatures)}};
       return true;
     }
     finish();
@@ -104,6 +111,8 @@ class CsvRowReader {
     bool has_origin = false;
     DateTime origin{};
     std::vector<double> held;
+    std::vector<double> first_degC;
+    Index rows = 0;
     Index dropped_rows = 0;
   };
 
@@ -123,7 +132,32 @@ class CsvRowReader {
     return true;
   }
 
+  /// What counts from the first row counts from it also when it is left out.
+  void remember_first() {
+    const auto temperatures = static_cast<std::ptrdiff_t>(layout_.roles.temperatures.size());
+    if (++state_->rows == 1) state_->first_degC.assign(cells_.values.begin(), cells_.values.begin() + temperatures);
+    if (state_->has_origin || !is_date_time() || lacks_time()) return;
+    state_->origin = cells_.date_time;
+    state_->has_origin = true;
+  }
+
+  bool lacks_time() const {
+    return std::any_of(cells_.missing.begin(), cells_.missing.end(),
+                       [&](const detail::MissingCell& one) { return layout_.slots[one.field].role != Role::value; });
+  }
+
+  /// Cells of errors that need not be there are no missing values.
+  void forgive_errors() {
+    const std::size_t first = layout_.roles.temperatures.size(), end = first + layout_.roles.errors.size();
+    const auto forgiven = [&](const detail::MissingCell& one) {
+      const detail::CsvSlot& slot = layout_.slots[one.field];
+      return slot.role == Role::value && slot.index >= first && slot.index < end;
+    };
+    cells_.missing.erase(std::remove_if(cells_.missing.begin(), cells_.missing.end(), forgiven), cells_.missing.end());
+  }
+
   bool settle_missing() {
+    if (options_.errors_may_lack) forgive_errors();
     if (cells_.missing.empty()) return true;
     if (file_.missing == 0)
       file_.first_missing = here(cells_.missing.front().column) + " (" + name_of(cells_.missing.front().field) + ")";
@@ -151,13 +185,8 @@ class CsvRowReader {
 
   bool check_time() {
     if (layout_.roles.time.empty()) return remember();
-    const bool missing_time =
-        std::any_of(cells_.missing.begin(), cells_.missing.end(),
-                    [&](const detail::MissingCell& one) { return layout_.slots[one.field].role != Role::value; });
-    if (missing_time) return remember();
+    if (lacks_time()) return remember();
     if (is_date_time()) {
-      if (!state_->has_origin) state_->origin = cells_.date_time;
-      state_->has_origin = true;
       cells_.time_s = static_cast<double>(cells_.date_time.seconds - state_->origin.seconds) +
                       (cells_.date_time.fraction - state_->origin.fraction);
     }

@@ -32,6 +32,7 @@ inline std::string batch_digest(const Batch& batch) {
     for (Index c = 0; c < channels->count(); ++c)
       add(channels->names[static_cast<std::size_t>(c)], channels->values.data() + c * channels->values.rows(),
           channels->values.rows());
+  if (batch.first_degC.size() > 0) add("first_degC", batch.first_degC.data(), batch.first_degC.size());
   return digest.hex();
 }
 

@@ -41,6 +41,7 @@ class ModelWriter {
   void optional(const char* key, bool present, Describe describe) {
     object(key, present, describe);
   }
+  void optional(const char* key, std::string& value, const std::vector<std::string>&) { object_[key] = value; }
   void optional(const char* key, const Vector& values, Index) {
     if (values.size() > 0) object_[key] = to_json<J>(values);
   }
@@ -78,6 +79,9 @@ class ModelReader {
   }
   void choice(const char* key, std::string& value, const std::vector<std::string>& allowed) {
     value = at(key).choice(allowed);
+  }
+  void optional(const char* key, std::string& value, const std::vector<std::string>& allowed) {
+    if (node_.json().contains(key)) choice(key, value, allowed);
   }
   void integer(const char* key, Index& value, Index most) { value = at(key).integer(0, most); }
   void number(const char* key, double& value) {
@@ -135,6 +139,10 @@ void describe_model(Archive& io, TrainedModel& m) {
   std::string reference = m.reference == TemperatureReference::rise ? "rise" : "absolute";
   io.choice("reference", reference, {"rise", "absolute"});
   m.reference = reference == "rise" ? TemperatureReference::rise : TemperatureReference::absolute;
+  std::string error_reference = name(m.error_reference);  // files of earlier versions: recorded
+  io.optional("error_reference", error_reference, {"recorded", "start", "batch"});
+  for (const ErrorReference one : {ErrorReference::recorded, ErrorReference::start, ErrorReference::batch})
+    if (error_reference == name(one)) m.error_reference = one;
   io.integer("components", m.components, p);
   io.number("ridge_lambda", m.ridge_lambda);
 

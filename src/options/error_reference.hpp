@@ -1,0 +1,26 @@
+#pragma once
+
+/// `--error-reference`, for commands that fit, compare or judge thermal errors, and what there is to say about it.
+
+#include <string>
+
+#include "cli/arguments.hpp"
+#include "cli/console.hpp"
+#include "thermfit/batch/error_reference.hpp"
+
+namespace thermfit::cli {
+
+Option error_reference_option();
+
+/// What the option says, `otherwise` without it. Throws UsageError together with --absolute.
+ErrorReference error_reference(const Arguments& arguments, ErrorReference otherwise = ErrorReference::recorded);
+
+/// "as recorded", "relative to the start of each batch" or "about each batch's own intercept".
+std::string in_words(ErrorReference reference);
+
+/// Says which errors start with a reading that is off, and which rises and errors count from a later row than the
+/// first: in what is learned from wherever the first row was left out, in what is predicted where it lacks a
+/// temperature.
+void note_starts(const Campaign& campaign, ErrorReference reference, bool learning, const Console& console);
+
+}  // namespace thermfit::cli
