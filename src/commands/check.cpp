@@ -27,6 +27,7 @@ const char* const details =
   unit        values that make sense in another unit only
   impossible  a number that no machine can have: what an instrument writes without a reading
   copy        the numbers of another batch once more
+  level       a thermal error that starts further apart in its batches than it moves in one: the probe's zero
 
 Limits are multiples of each channel's own noise and resolution. Rows count from 1 at the first row of the batch. What cannot be read at all is an error, told with file:line:column.
 Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";

@@ -86,6 +86,7 @@ Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan
   for (std::size_t b = 0; b < models.size(); ++b) {
     const auto& [name, model] = models[b];
     note_limits(model, plan, name + ": ", console);
+    note_probe_levels(model, console);
     if (!paths.empty()) save_model(model, paths[b]);
     for (Index e = 0; e < model.model.errors(); ++e)
       console.print(wrap(name + ": " + model_equation(model, e) + "   (S " +
@@ -113,7 +114,9 @@ Exit run_fit(const Arguments& arguments, Console& console) {
     throw UsageError("--output-folder goes with --each-batch; one model goes to -o");
 
   plan.points = chosen_points(campaign, arguments, plan);
+  note_levels(campaign, plan.points, plan.reference, plan.error_reference, console);
   const TrainedModel model = train(campaign, plan);
+  note_probe_levels(model, console);
   note_limits(model, plan, "", console);
   if (arguments.has("--json")) {
     console.line(model_to_json(model).dump(1));

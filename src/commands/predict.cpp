@@ -11,6 +11,7 @@
 #include "options/output.hpp"
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/json/model.hpp"
+#include "thermfit/io/nearest.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -89,6 +90,30 @@ void print_summary(const TrainedModel& model, const std::vector<Predicted>& all,
   console.print(table.text());
 }
 
+/// Says which batches a model on errors as recorded misses mostly by where their errors start.
+void note_zeros(TrainedModel model, const std::vector<Predicted>& all, Console& console) {
+  model.error_reference = ErrorReference::start;
+  for (std::size_t e = 0; e < model.errors.size(); ++e) {
+    const auto error = static_cast<Index>(e);
+    std::vector<std::string> batches;
+    double recorded = 0, from_start = 0;
+    for (const auto& [batch, p] : all) {
+      if (p.S_um.size() == 0) continue;
+      const double own = predict(model, *batch).S_um(error);
+      if (!(own * own < p.S_um(error) * p.S_um(error) / 2)) continue;
+      batches.push_back(batch->name);
+      if (p.S_um(error) < recorded) continue;
+      recorded = p.S_um(error);
+      from_start = own;
+    }
+    if (!batches.empty())
+      console.note(name_list(batches, 6) + ": where " + model.errors[e] +
+                   " starts is most of what the model leaves of " + "it, S " + fixed_text(recorded, 1) +
+                   " um, from its start " + fixed_text(from_start, 1) +
+                   " um: was the probe set to zero anew? --error-reference start");
+  }
+}
+
 Json to_document(const TrainedModel& model, const std::vector<Predicted>& all) {
   Json document{{"format", "thermfit-prediction/1"},
                 {"errors", model.errors},
@@ -121,6 +146,7 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   note_starts(campaign, model.error_reference, false, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
+  if (model.error_reference == ErrorReference::recorded) note_zeros(model, all, console);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.line(to_document(model, all).dump(1));

@@ -46,6 +46,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
   const Campaign campaign = learning_campaign(arguments, console, temperature_reference(arguments));
   note_starts(campaign, error_reference(arguments), true, console);
   const Index count = require_points(arguments, campaign, campaign.front().temperatures.count());
+  note_levels(campaign, {}, temperature_reference(arguments), error_reference(arguments), console);
   const std::vector<std::string>& names = campaign.front().temperatures.names;
   const std::vector<std::string>& errors = campaign.front().errors.names;
   const std::vector<Ranking> rankings = rank_all(campaign, arguments, count);

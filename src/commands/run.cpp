@@ -5,6 +5,7 @@
 #include "commands/commands.hpp"
 #include "commands/live_compensation.hpp"
 #include "options/compensation_options.hpp"
+#include "options/error_reference.hpp"
 #include "options/output.hpp"
 #include "thermfit/io/json/model.hpp"
 
@@ -19,7 +20,10 @@ const char* const details =
     "\n"
     "Corrections are relative to the thermal state when the work offset was probed. A line `datum` says that it is "
     "probed now: the next lines that agree become the zero, and the offset 0 there. --state FILE keeps the zero over a "
-    "power cycle. Without either the state is `no datum` and the offset 0, unless --zero first takes the first lines.\n"
+    "power cycle. Without either the state is `no datum` and the offset 0, unless --zero first takes the first lines. "
+    "Errors that count from the start of each batch (fit --error-reference start) are just what a datum makes of them; "
+    "a "
+    "probe's zero or a machine coordinate in a model is no error, and refused where it would be applied.\n"
     "\n"
     "Answer: line number, offset of each error in um, state, status word, first sensor not used, why, where the zero "
     "is from. A line that "
@@ -35,6 +39,7 @@ Exit run_run(const Arguments& arguments, Console& console) {
   if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
   if (const auto state = arguments.value("--state")) require_not_read(arguments, *state);
   const TrainedModel trained = load_model(arguments.positionals()[0]);
+  note_probe_levels(trained, console);
   LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"),
                         arguments.value_or("--state", ""));
   const double watchdog_s = arguments.number("--watchdog", .001, 86400).value_or(0);

@@ -68,6 +68,8 @@ Exit run_study(const Arguments& arguments, Console& console) {
   report.error_reference = error_reference(arguments);
   const Campaign campaign = learning_campaign(arguments, console, report.reference);
   note_starts(campaign, report.error_reference, true, console);
+  require_errors(campaign);
+  note_levels(campaign, {}, report.reference, report.error_reference, console);
   StudyOptions options;
   options.points = require_points(arguments, campaign, 2);
   options.most_points = arguments.integer("--most-points", 1, 10000).value_or(0);

@@ -98,6 +98,9 @@ std::vector<Option> campaign_options() {
        0, false},
       {"--time-unit", "UNIT", "unit of a clock that names none: us, ms, s, min, h, d (default: min)", 0, false},
       {"--batch-column", "NAME", "split each file into batches by this column (default: a file is a batch)", 0, false},
+      {"--join", "GLOBS",
+       "files like a glob are one batch that its logger split, such as 'run1_*,run2_*' (default: a file is a batch)", 0,
+       true},
       {"--missing", "POLICY",
        "missing values: error, drop (leave the row out), hold (repeat the last) (default: error)", 0, false},
       {"--delimiter", "MARK", "comma, semicolon, tab or bar (default: from the file)", 0, false},
@@ -133,6 +136,9 @@ CsvOptions csv_options(const Arguments& arguments) {
     if (*options.inputs == std::vector<std::string>{"none"}) options.inputs->clear();
   }
   options.batch_column = arguments.value_or("--batch-column", "");
+  options.join = arguments.list("--join");
+  if (!options.join.empty() && !options.batch_column.empty())
+    throw UsageError("--join makes one batch of files and --batch-column several of one; say one of them");
   const std::string missing = arguments.choice("--missing", {"error", "drop", "hold"}, "error");
   options.missing = missing == "drop"   ? MissingValues::drop
                     : missing == "hold" ? MissingValues::hold

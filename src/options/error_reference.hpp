@@ -3,10 +3,12 @@
 /// `--error-reference`, for commands that fit, compare or judge thermal errors, and what there is to say about it.
 
 #include <string>
+#include <vector>
 
 #include "cli/arguments.hpp"
 #include "cli/console.hpp"
 #include "thermfit/batch/error_reference.hpp"
+#include "thermfit/model/trained_model.hpp"
 
 namespace thermfit::cli {
 
@@ -22,5 +24,13 @@ std::string in_words(ErrorReference reference);
 /// first: in what is learned from wherever the first row was left out, in what is predicted where it lacks a
 /// temperature.
 void note_starts(const Campaign& campaign, ErrorReference reference, bool learning, const Console& console);
+
+/// Says where the levels of batches are most of an error, or most of what temperatures leave of it, and no temperature
+/// tells them: the probe's zero. `points`: temperature columns a model reads; empty: all.
+void note_levels(const Campaign& campaign, const std::vector<Index>& points, TemperatureReference temperatures,
+                 ErrorReference reference, const Console& console);
+
+/// Says which errors of a model stand at a probe's zero or a machine coordinate (probe_level_um).
+void note_probe_levels(const TrainedModel& model, const Console& console);
 
 }  // namespace thermfit::cli

@@ -1,5 +1,6 @@
 #include "options/field_flags.hpp"
 
+#include "thermfit/controller/settings_for.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/fit/train.hpp"
 #include "thermfit/io/csv/options.hpp"
@@ -28,11 +29,13 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, errors, "--errors"),
       THERMFIT_FLAG(CsvOptions, inputs, "--inputs"),
       THERMFIT_FLAG(CsvOptions, batch_column, "--batch-column"),
+      THERMFIT_FLAG(CsvOptions, join, "--join"),
       THERMFIT_FLAG(CsvOptions, missing, "--missing"),
       THERMFIT_FLAG(CsvOptions, max_errors, "--max-errors"),
       THERMFIT_FLAG(TrainingPlan, row_wise, "thermfit fit --row-wise"),
       THERMFIT_FLAG(TrainingPlan, error_reference, "--error-reference"),
       THERMFIT_FLAG(OutputsOptions, room, "--ambient"),
+      THERMFIT_FLAG(CompensationWishes, through_zero, "--through-zero"),
       {"pair_campaigns::sim", "--sim"},  // an argument of that function
   };
   return table;

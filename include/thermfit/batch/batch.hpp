@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Batch {
   Index held_values = 0;           ///< missing values replaced by the last one of their channel (MissingValues::hold)
   std::vector<Index> row_numbers;  ///< where rows were left out: the number of each in its file, from 1; else empty
   Vector first_degC;  ///< where the first row was left out: its temperatures, NaN where there was none; else empty
+  double begins_s = std::numeric_limits<double>::quiet_NaN();  ///< time 0 of a clock of dates, since 1970; else NaN
 
   /// Number in its file of a row, from 1. Does not allocate.
   Index number_of(Index row) const {

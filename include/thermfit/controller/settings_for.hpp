@@ -6,6 +6,7 @@
 
 #include "thermfit/controller/compensator_settings.hpp"
 #include "thermfit/controller/narrow_model.hpp"
+#include "thermfit/model/probe_level.hpp"
 
 /// Host only: a compensator's settings in the units people think in.
 
@@ -38,6 +39,23 @@ struct CompensationWishes {
 
 namespace detail {
 
+/// Refuses to apply what is no thermal error: the probe's zero in a model of errors as recorded.
+inline void refuse_probe_level(const TrainedModel& trained, const CompensationWishes& wishes) {
+  const bool rise = trained.reference == TemperatureReference::rise;
+  for (Index j = 0; j < trained.model.errors(); ++j) {
+    const double level = probe_level_um(trained, j);
+    if (level == 0 || (rise && (wishes.zero == ZeroPolicy::wait || wishes.through_zero))) continue;
+    throw Error("model of " + trained.errors[static_cast<std::size_t>(j)],
+                "it stands at " + std::to_string(std::lround(level)) +
+                    " um, far beyond all that it and its temperatures moved in training: a machine coordinate or the "
+                    "probe's zero, no thermal error",
+                "",
+                rise ? "fit with TrainingPlan::error_reference = start, or let it drop out: "
+                       "CompensationWishes::through_zero"
+                     : "fit temperature rises with TrainingPlan::error_reference = start");
+  }
+}
+
 inline std::uint32_t steps_in(double time_s, double period_s) {
   return static_cast<std::uint32_t>(std::min(1e9, std::ceil(time_s / period_s - 1e-9)));
 }
@@ -46,11 +64,12 @@ inline std::uint32_t steps_in(double time_s, double period_s) {
 
 /// Settings per step from `wishes` and what `trained` knows of its sensors. A model without a sensor envelope gives
 /// the range -50…150 degC and no rate or stuck check. Throws Error when the result breaks a rule of
-/// CompensatorSettings, naming it.
+/// CompensatorSettings, naming it, and where a probe's zero (probe_level_um) would be applied; it counts in no clamp.
 template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size>
 CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& trained,
                                                           const CompensationWishes& wishes = {}) {
   if (!(wishes.period_s > 0)) throw Error("period_s", "not above 0", "the cycle time in seconds");
+  detail::refuse_probe_level(trained, wishes);
   CompensatorSettings<Scalar, Sensors, Errors> settings;
   const SensorEnvelope& known = trained.envelope;
   settings.zero = {wishes.zero,
@@ -92,7 +111,8 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
   settings.sign = wishes.sign;
   detail::fit_size<OutputLimits<Scalar>, Errors>(settings.outputs, trained.model.errors(), "errors");
   for (Index j = 0; j < trained.model.errors(); ++j) {
-    const double usual_um = std::ceil(std::abs(trained.error_mean(j)) + 4 * trained.error_scale(j));
+    const double usual_um =
+        std::ceil(std::abs(trained.error_mean(j) - probe_level_um(trained, j)) + 4 * trained.error_scale(j));
     settings.outputs[static_cast<std::size_t>(j)] = {static_cast<Scalar>(wishes.clamp_um.value_or(usual_um)),
                                                      static_cast<Scalar>(wishes.slew_um_per_s * wishes.period_s)};
   }

@@ -21,14 +21,15 @@ enum class FindingRule {
   collinear,   ///< a temperature that others give to less than their resolution: a copy or a computed channel
   unit,        ///< values that hint at another unit
   impossible,  ///< a number that no temperature of a machine, or error of it, can have: written without a reading
-  copy         ///< a batch that holds the numbers of another
+  copy,        ///< a batch that holds the numbers of another
+  level        ///< a thermal error that starts further apart in its batches than it moves in one
 };
 
 /// The rule's name in tables and JSON. Does not allocate.
 inline std::string_view rule_name(FindingRule rule) {
   constexpr std::string_view names[] = {"time-gap",  "time-back",  "missing", "constant", "stuck",
                                         "saturated", "stale",      "spike",   "jump",     "collinear",
-                                        "unit",      "impossible", "copy"};
+                                        "unit",      "impossible", "copy",    "level"};
   return names[static_cast<int>(rule)];
 }
 

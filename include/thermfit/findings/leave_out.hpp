@@ -191,10 +191,18 @@ inline void keep_firsts(Batch& batch, const std::vector<std::string>& names) {
   batch.first_degC.conservativeResize(kept);
 }
 
-/// What a rise of `kept` counts from where the first reading of `whole` is a fault.
-inline void take_back_first(Batch& kept, const Batch& whole, const Finding& fault) {
+/// What a rise of `kept` counts from where the first reading of `whole` is a fault, or stands on another zero than what
+/// is kept.
+inline void take_back_first(Batch& kept, const Batch& whole, const Finding& fault,
+                            const std::vector<Index>& left_rows) {
   const Index point = whole.temperatures.find(fault.channel);
-  if (point < 0 || fault.first_row > 0 || kept.first_degC.size() == 0) return;
+  if (point < 0 || kept.first_degC.size() == 0) return;
+  const auto is_left = [&](Index row) { return std::binary_search(left_rows.begin(), left_rows.end(), row); };
+  if (fault.rule == FindingRule::jump) {
+    if (is_left(fault.first_row) && !is_left(fault.last_row)) kept.first_degC(point) = std::nan("");
+    return;
+  }
+  if (fault.first_row > 0) return;
   const Series series(whole.temperatures.values.col(point));
   const bool taken_back = fault.last_row == 0 && series.size() > 4 && series.rows[4] == 4;
   kept.first_degC(point) = taken_back ? course_taken_back(series.values) : std::nan("");
@@ -218,7 +226,7 @@ inline Campaign without(Campaign campaign, const LeaveOut& left) {
       batch = kept_rows(std::move(batch), rows);
       for (const LeaveOut::Reason& reason : left.reasons)
         if (reason.batch == b && reason.what == LeaveOut::What::rows)
-          detail::take_back_first(batch, whole, reason.finding);
+          detail::take_back_first(batch, whole, reason.finding, left.rows[b]);
     }
     detail::keep_firsts(batch, left.temperatures);
     detail::keep_others(batch.temperatures, left.temperatures);

@@ -29,6 +29,7 @@ struct CsvOptions {
                                                    ///< without a value is NaN, whatever `missing` says
   std::optional<std::vector<std::string>> inputs;  ///< absent: every other column of numbers
   std::string batch_column;                        ///< splits a file into batches by its value; empty: one batch
+  std::vector<std::string> join;                   ///< globs: the files that one of them names are parts of one batch
   MissingValues missing = MissingValues::error;    ///< what to do with a cell that has no value
   bool increasing_time = true;                     ///< false: time that repeats or goes back is left to the caller
   bool plain = false;           ///< every column of numbers is an input, whatever its name: for read_table

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/batch/joined.hpp"
 #include "thermfit/compiled.hpp"
 #include "thermfit/io/csv/rows.hpp"
 #include "thermfit/io/files/batch_digest.hpp"
@@ -15,8 +16,9 @@ namespace thermfit {
 
 /// Batches and what was met on the way to them.
 struct CsvReading {
-  Campaign batches;            ///< of all files in the order given, those of one file in order of appearance
-  std::vector<CsvFile> files;  ///< what was met in each, in the order given
+  Campaign batches;                 ///< of all files in the order given, those of one file in order of appearance
+  std::vector<CsvFile> files;       ///< what was met in each, in the order given
+  std::vector<std::string> joined;  ///< a remark for each batch of several files (CsvOptions::join)
 
   /// Remarks a user should hear: a dialect that is not the plain one, conversions, missing values, columns left out.
   /// The same remark about several files is made once.
@@ -30,6 +32,7 @@ struct GrowingBatch {
   std::string key;
   std::vector<double> time_s, values, first_degC;
   std::vector<Index> numbers;  ///< of the rows in the file, from 1
+  double begins_s = missing_value;
   Index held_values = 0;
 };
 
@@ -72,12 +75,13 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
   while (reader.next(row)) {
     if (!current || current->key != row.batch) {
       const auto [found, fresh] = index.emplace(row.batch, batches.size());
-      if (fresh) batches.push_back({std::string(row.batch), {}, {}, {}, {}, 0});
+      if (fresh) batches.push_back({std::string(row.batch), {}, {}, {}, {}, missing_value, 0});
       current = &batches[found->second];
       if (fresh) current->first_degC.assign(row.first_degC.data(), row.first_degC.data() + row.first_degC.size());
     }
     current->held_values += row.held_values;
     current->numbers.push_back(row.number);
+    current->begins_s = row.begins_s;
     current->time_s.push_back(row.time_s);
     current->values.insert(current->values.end(), row.temperatures.data(), row.temperatures.data() + width);
   }
@@ -97,6 +101,7 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     if (rows.numbers.front() != 1)
       batch.first_degC = Eigen::Map<const Vector>(rows.first_degC.data(), static_cast<Index>(rows.first_degC.size()));
     if (rows.numbers.back() != static_cast<Index>(rows.numbers.size())) batch.row_numbers = std::move(rows.numbers);
+    batch.begins_s = rows.begins_s;
     batch.digest = batch_digest(batch);
     reading.batches.push_back(std::move(batch));
     rows = {};
@@ -147,9 +152,69 @@ inline void make_names_differ(Campaign& batches) {
 
 }  // namespace detail
 
+namespace detail {
+
+inline bool is_like(const std::string& glob, const std::string& path) {
+  return matches_glob(glob, path) || matches_glob(glob, path.substr(path.rfind('/') + 1)) ||
+         matches_glob(glob, stem(path));
+}
+
+/// "run1" for run1_*.csv: what a glob says without its wildcards; the first file where it says nothing.
+inline std::string name_of_joined(const std::string& glob, const std::string& first) {
+  std::string name = stem(glob);
+  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '*' || c == '?'; }), name.end());
+  const char* const edges = "_-. ";
+  const std::size_t begin = name.find_first_not_of(edges);
+  return begin == std::string::npos ? first : name.substr(begin, name.find_last_not_of(edges) - begin + 1);
+}
+
+/// Makes one batch of those whose files are like a glob of CsvOptions::join, where the first of them stands.
+inline void join_files(const std::vector<std::string>& globs, CsvReading& reading) {
+  Campaign whole;
+  std::vector<std::vector<Batch>> parts(globs.size());
+  std::vector<std::size_t> places(globs.size());
+  for (Batch& batch : reading.batches) {
+    std::size_t into = globs.size();
+    for (std::size_t g = 0; g < globs.size(); ++g) {
+      if (!is_like(globs[g], batch.source)) continue;
+      if (into < globs.size())
+        throw problem(batch.source,
+                      {"is like ", shown(globs[into]), " and like ", shown(globs[g]), " (CsvOptions::join)"},
+                      {"one batch for a file"});
+      into = g;
+    }
+    if (into == globs.size()) {
+      whole.push_back(std::move(batch));
+      continue;
+    }
+    if (parts[into].empty()) {
+      places[into] = whole.size();
+      whole.emplace_back();
+    }
+    parts[into].push_back(std::move(batch));
+  }
+  for (std::size_t g = 0; g < globs.size(); ++g) {
+    if (parts[g].empty()) {
+      std::vector<std::string> names;
+      for (const CsvFile& file : reading.files) names.push_back(file.path.substr(file.path.rfind('/') + 1));
+      throw problem("CsvOptions::join", {"no file is like ", shown(globs[g])}, {"files among ", name_list(names)});
+    }
+    Batch& batch = whole[places[g]];
+    const std::size_t count = parts[g].size();
+    const std::string name = name_of_joined(globs[g], parts[g].front().name);
+    batch = joined(std::move(parts[g]), name);
+    batch.digest = batch_digest(batch);
+    reading.joined.push_back(batch.name + ": " + std::to_string(count) + (count == 1 ? " file" : " files") + " like " +
+                             globs[g] + " as one batch, the first " + batch.source);
+  }
+  reading.batches = std::move(whole);
+}
+
+}  // namespace detail
+
 /// Reads batches from files (`-`: standard input), in the order given. All have the same temperature points and errors,
-/// in the order of the first. Throws Error, or Errors with everything that is wrong in all files up to
-/// options.max_errors. Allocates.
+/// in the order of the first. Those whose files are like a glob of options.join become one. Throws Error, or Errors
+/// with everything that is wrong in all files up to options.max_errors. Allocates.
 template <typename Scalar = double>
 CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions& options = {}) {
   CsvReading reading;
@@ -184,6 +249,7 @@ CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions
                   "CsvOptions::temperatures");
     detail::agree(first.errors, batch.errors, batch, first, "errors", "CsvOptions::errors");
   }
+  if (!options.join.empty()) detail::join_files(options.join, reading);
   detail::make_names_differ(reading.batches);
   return reading;
 }
@@ -211,7 +277,7 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
                         cells + ", first " + file.first_missing
                   : cells + " held, first " + file.first_missing);
   }
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = joined;
   for (const auto& [text, paths] : found)
     notes.push_back(paths.front() +
                     (paths.size() > 1 ? " and " + std::to_string(paths.size() - 1) + " more" : std::string()) + ": " +

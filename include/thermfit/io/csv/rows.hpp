@@ -18,15 +18,16 @@ namespace thermfit {
 struct CsvRow {
   /// The values of one role, a view; NaN where one is missing and MissingValues::keep is asked for.
   using Values = Eigen::Map<const Eigen::RowVectorXd>;
-  std::size_t line;                        ///< in the file, from 1
-  std::string_view batch;                  ///< value of the batch column; empty without one
-  double time_s;                           ///< NaN without a clock
-  Values temperatures,                     ///< degC
-      errors,                              ///< um
-      inputs;                              ///< as written
-  Index held_values = 0;                   ///< values that were missing and are the last ones of their channel
-  Index number = 0;                        ///< in its batch, from 1, counting rows that were left out
-  Values first_degC = Values(nullptr, 0);  ///< temperatures of row 1 of its batch, NaN where it has none
+  std::size_t line;                         ///< in the file, from 1
+  std::string_view batch;                   ///< value of the batch column; empty without one
+  double time_s;                            ///< NaN without a clock
+  Values temperatures,                      ///< degC
+      errors,                               ///< um
+      inputs;                               ///< as written
+  Index held_values = 0;                    ///< values that were missing and are the last ones of their channel
+  Index number = 0;                         ///< in its batch, from 1, counting rows that were left out
+  Values first_degC = Values(nullptr, 0);   ///< temperatures of row 1 of its batch, NaN where it has none
+  double begins_s = detail::missing_value;  ///< time 0 of its batch, since 1970; NaN where the clock tells no dates
 };
 
 /// What was met while reading one file.
@@ -95,7 +96,9 @@ class CsvRowReader {
                         {values + count(roles.temperatures) + count(roles.errors), count(roles.inputs)},
                         options_.missing == MissingValues::hold ? static_cast<Index>(cells_.missing.size()) : 0,
                         state_->rows,
-                        {state_->first_degC.data(), count(roles.temperatures)}};
+                        {state_->first_degC.data(), count(roles.temperatures)},
+                        state_->has_origin ? static_cast<double>(state_->origin.seconds) + state_->origin.fraction
+                                           : detail::missing_value};
       return true;
     }
     finish();
