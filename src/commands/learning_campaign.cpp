@@ -58,7 +58,7 @@ void note_first_readings(const Campaign& campaign, const Console& console) {
 }  // namespace
 
 Campaign learning_campaign(const Arguments& arguments, const Console& console, TemperatureReference reference) {
-  Campaign campaign = read_campaign(arguments, console, arguments.positionals());
+  Campaign campaign = read_campaign(arguments, console, arguments.positionals(), false);
   note_unused_thermometers(campaign, arguments, console);
   note_faults(campaign, reference, console);
   return campaign;

@@ -139,7 +139,7 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   CsvOptions options = csv_options(arguments);
   if (options.temperatures.empty()) options.temperatures = model.temperatures;
   if (options.errors.empty()) options.errors = model.errors;
-  options.errors_may_lack = true;
+  options.errors_may_lack = options.inputs_may_lack = true;
   if (!options.inputs) options.inputs = std::vector<std::string>{};
   const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
   note_faults(campaign, model.reference, console);

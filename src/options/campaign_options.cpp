@@ -201,8 +201,11 @@ CsvReading read_files(const CsvOptions& options, const Console& console, const s
   return reading;
 }
 
-Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths) {
-  Campaign campaign = read_files(csv_options(arguments), console, paths).batches;
+Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths,
+                       bool needs_inputs) {
+  CsvOptions options = csv_options(arguments);
+  options.inputs_may_lack = !needs_inputs;
+  Campaign campaign = read_files(options, console, paths).batches;
   note_copies(campaign, console);
   return campaign;
 }

@@ -28,7 +28,9 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths);
 
 /// Reads the batches of all `paths` and says on stderr what was not plain about them. Throws UsageError without paths.
 CsvReading read_files(const CsvOptions& options, const Console& console, const std::vector<std::string>& paths);
-Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths);
+/// For who needs no inputs, their cells may be empty.
+Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths,
+                       bool needs_inputs = true);
 
 /// Whether a plain file begins as a JSON document does.
 bool begins_as_json(const std::string& path);

@@ -140,3 +140,20 @@ TEST_CASE("hostile counts and shapes are refused before memory is taken", "[io]"
     CHECK(refusal(Json::array()) == "m.json: no \"format\"; allowed: \"thermfit-model/1\"; is this the right file?");
   }
 }
+
+TEST_CASE("what errors are measured from is kept; files of earlier versions say nothing: as recorded", "[io]") {
+  for (const ErrorReference reference : {ErrorReference::recorded, ErrorReference::start, ErrorReference::batch}) {
+    TrainedModel model = example();
+    model.error_reference = reference;
+    const Json document = model_to_json(model);
+    CHECK(document["error_reference"] == name(reference));
+    CHECK(model_from_json(document, "model.json").error_reference == reference);
+  }
+  Json earlier = model_to_json(example());
+  earlier.erase("error_reference");
+  earlier["digest"] = detail::model_digest(earlier);
+  CHECK(model_from_json(earlier, "model.json").error_reference == ErrorReference::recorded);
+  Json other = model_to_json(example());
+  other["error_reference"] = "first";
+  CHECK(refusal(other).find("error_reference") != std::string::npos);
+}

@@ -28,10 +28,11 @@ struct CsvOptions {
   bool errors_may_lack = false;                    ///< of `errors`, only those that a file has are read, and a cell
                                                    ///< without a value is NaN, whatever `missing` says
   std::optional<std::vector<std::string>> inputs;  ///< absent: every other column of numbers
-  std::string batch_column;                        ///< splits a file into batches by its value; empty: one batch
-  std::vector<std::string> join;                   ///< globs: the files that one of them names are parts of one batch
-  MissingValues missing = MissingValues::error;    ///< what to do with a cell that has no value
-  bool increasing_time = true;                     ///< false: time that repeats or goes back is left to the caller
+  bool inputs_may_lack = false;                  ///< a cell of an input without a value is NaN, whatever `missing` says
+  std::string batch_column;                      ///< splits a file into batches by its value; empty: one batch
+  std::vector<std::string> join;                 ///< globs: the files that one of them names are parts of one batch
+  MissingValues missing = MissingValues::error;  ///< what to do with a cell that has no value
+  bool increasing_time = true;                   ///< false: time that repeats or goes back is left to the caller
   bool plain = false;           ///< every column of numbers is an input, whatever its name: for read_table
   std::size_t max_errors = 20;  ///< problems told of in one pass
   std::size_t max_line_bytes = std::size_t{1} << 20;  ///< limits against files that are not what they seem

@@ -149,18 +149,20 @@ class CsvRowReader {
                        [&](const detail::MissingCell& one) { return layout_.slots[one.field].role != Role::value; });
   }
 
-  /// Cells of errors that need not be there are no missing values.
-  void forgive_errors() {
-    const std::size_t first = layout_.roles.temperatures.size(), end = first + layout_.roles.errors.size();
+  /// Cells of errors or inputs that need not be there are no missing values.
+  void forgive() {
+    if (cells_.missing.empty() || (!options_.errors_may_lack && !options_.inputs_may_lack)) return;
+    const std::size_t errors = layout_.roles.temperatures.size(), inputs = errors + layout_.roles.errors.size();
     const auto forgiven = [&](const detail::MissingCell& one) {
       const detail::CsvSlot& slot = layout_.slots[one.field];
-      return slot.role == Role::value && slot.index >= first && slot.index < end;
+      if (slot.role != Role::value || slot.index < errors) return false;
+      return slot.index < inputs ? options_.errors_may_lack : options_.inputs_may_lack;
     };
     cells_.missing.erase(std::remove_if(cells_.missing.begin(), cells_.missing.end(), forgiven), cells_.missing.end());
   }
 
   bool settle_missing() {
-    if (options_.errors_may_lack) forgive_errors();
+    forgive();
     if (cells_.missing.empty()) return true;
     if (file_.missing == 0)
       file_.first_missing = here(cells_.missing.front().column) + " (" + name_of(cells_.missing.front().field) + ")";

@@ -11,6 +11,8 @@
 #include "thermfit/version.hpp"
 
 /// The model file `thermfit-model/1`: readable JSON with 17 digits, bounded counts and a digest over all of it.
+/// `reference` tells what temperatures count from (rise, absolute), `error_reference` what errors do (recorded, start,
+/// batch: TrainedModel::error_reference); files of earlier versions lack it, and their errors are as recorded.
 
 namespace thermfit {
 namespace detail {
