@@ -7,6 +7,7 @@
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/batch/campaign_card.hpp"
 #include "thermfit/batch/error_reference.hpp"
+#include "thermfit/batch/joined.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/features/feature.hpp"
 #include "thermfit/features/lag.hpp"

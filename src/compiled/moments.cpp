@@ -1,5 +1,5 @@
-// The instances of moments/ and select/ that thermfit::compiled holds.
-#include "thermfit/compiled.hpp"
+// The instances of moments/ and select/ that thermfit::compiled holds; what lies below is compiled elsewhere.
+#include "thermfit/statistics/residual_noise.hpp"
 
 #undef THERMFIT_COMPILED_ELSEWHERE
 #define THERMFIT_COMPILED_ELSEWHERE
