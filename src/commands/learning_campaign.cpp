@@ -43,10 +43,19 @@ void note_unused_thermometers(const Campaign& campaign, const Arguments& argumen
                " (--temperatures tells others, --inputs ends this remark)");
 }
 
+/// Readings of a temperature from the row on that its rises count from.
+Vector from_first_row(const Batch& batch, Index c) {
+  const bool left_out = batch.first_degC.size() > 0;
+  Vector readings(batch.rows() + (left_out ? 1 : 0));
+  readings(0) = left_out ? batch.first_degC(c) : batch.temperatures.values(0, c);
+  readings.tail(batch.rows()) = batch.temperatures.values.col(c);
+  return readings;
+}
+
 void note_first_readings(const Campaign& campaign, const Console& console) {
   for (const Batch& batch : campaign)
     for (Index c = 0; c < batch.temperatures.count(); ++c) {
-      const double off_K = first_reading_off_K(Series(batch.temperatures.values.col(c)));
+      const double off_K = first_reading_off_K(Series(from_first_row(batch, c)));
       if (off_K > 0)
         console.note(batch.source + ": " + batch.temperatures.names[static_cast<std::size_t>(c)] + " begins " +
                      fixed_text(off_K, 2) +

@@ -80,7 +80,7 @@ void print_summary(const TrainedModel& model, const std::vector<Predicted>& all,
     std::vector<std::string> row{batch->name, std::to_string(batch->rows())};
     for (Index e = 0; e < model.model.errors() && measured; ++e) {
       const bool own = p.residuals.cols() > 0;
-      row.push_back(own ? fixed_text(p.S_um(e), 2) : "-");
+      row.push_back(own ? known_text(p.S_um(e), 2) : "-");
       row.push_back(own ? fixed_text(largest(p.residuals.col(e)), 2) : "-");
     }
     row.push_back(fixed_text(100 * p.share_beyond(model.domain, 95), 1) + " %");

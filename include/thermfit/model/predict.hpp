@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,10 @@ namespace thermfit {
 
 /// What a model says of one batch.
 struct BatchPrediction {
-  Matrix errors;                            ///< rows x errors, um
-  Matrix residuals;                         ///< prediction minus measurement, um, NaN in rows without one; no columns
-                                            ///< where an error was measured in no row
-  Vector S_um;                              ///< eq. (10) per error over the rows measured; empty where not measured
+  Matrix errors;     ///< rows x errors, um
+  Matrix residuals;  ///< prediction minus measurement, um, NaN in rows without one; no columns
+                     ///< where an error was measured in no row
+  Vector S_um;       ///< eq. (10) per error over the rows measured, NaN of one; empty where not measured
   std::vector<DomainDistance<>> distances;  ///< per row
 
   /// Share of rows beyond the 95 % or 99 % limit of `domain`, 0 … 1.
@@ -104,7 +105,8 @@ BatchPrediction predict(const TrainedModel& trained, const Batch& batch) {
       if (std::isfinite(own(row))) squares += own(row) * own(row), ++measured;
     if (measured == 0) return result;
     residuals.col(e) = own;
-    S(e) = std::sqrt(squares / static_cast<Scalar>(measured - 1));
+    S(e) = measured > 1 ? std::sqrt(squares / static_cast<Scalar>(measured - 1))
+                        : std::numeric_limits<Scalar>::quiet_NaN();
   }
   result.residuals = residuals.template cast<double>();
   result.S_um = S.template cast<double>();
