@@ -52,7 +52,6 @@ Exit run_export(const Arguments& arguments, Console& console) {
   if (target != "card" && !request.control.empty()) throw UsageError("--control belongs to --target card");
   request.source = arguments.positionals()[0];
   request.trained = load_model(request.source);
-  note_probe_levels(request.trained, console);
   request.source = request.source.substr(request.source.rfind('/') + 1);
   request.name = arguments.value_or("--name", "thermal");
   if (identifiers({request.name})[0] != request.name || upper_case(request.name) == request.name)
@@ -68,6 +67,7 @@ Exit run_export(const Arguments& arguments, Console& console) {
   request.unit = offset_unit(arguments.choice("--unit", {"um", "mm", "0.1um"}, default_unit(target, request.control)));
   for (const Target& known : targets)
     if (known.name == target) console.print(known.write(request));
+  note_probe_levels(request.trained, console);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   return Exit::done;
 }

@@ -39,9 +39,9 @@ Exit run_run(const Arguments& arguments, Console& console) {
   if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
   if (const auto state = arguments.value("--state")) require_not_read(arguments, *state);
   const TrainedModel trained = load_model(arguments.positionals()[0]);
-  note_probe_levels(trained, console);
   LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"),
                         arguments.value_or("--state", ""));
+  note_probe_levels(trained, console);
   const double watchdog_s = arguments.number("--watchdog", .001, 86400).value_or(0);
 
   LineSource source(0);

@@ -102,7 +102,7 @@ void note_levels(const Campaign& campaign, const std::vector<Index>& points, Tem
     const bool mostly = seen.share(e) > .5, start_helps = may_start && from_start.common(e) < seen.common(e) / 2;
     if (!mostly && !start_helps) continue;
     const std::string& name = campaign.front().errors.names[static_cast<std::size_t>(e)];
-    const auto percent = [](double share) { return fixed_text(100 * share, 0) + " %"; };
+    const auto percent = [](double share) { return fixed_text(std::floor(100 * share), 0) + " %"; };
     std::string text = mostly ? "batch means explain " + percent(seen.share(e)) + " of " + name +
                                     ", the temperatures do not: they leave " + um(seen.common(e)) +
                                     ", with an intercept for each batch " + um(seen.own(e))

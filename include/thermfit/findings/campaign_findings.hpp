@@ -25,7 +25,8 @@ CampaignFindings find_faults(const Campaign& campaign, const FindingLimits& limi
   for (std::size_t b = 0; b < campaign.size(); ++b)
     if (auto copy = copy_finding(campaign, b)) findings[b].push_back(std::move(*copy));
   for (const std::string& name : campaign.empty() ? std::vector<std::string>() : campaign.front().errors.names)
-    if (auto level = level_finding(campaign, name)) findings[level->batch].push_back(std::move(level->finding));
+    if (auto level = level_finding(campaign, name, limits.judged_rows))
+      findings[level->batch].push_back(std::move(level->finding));
   return findings;
 }
 

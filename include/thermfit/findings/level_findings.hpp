@@ -21,8 +21,10 @@ struct LevelFinding {
 };
 
 /// Whether batches start an error further apart than it moves in one of them. Where rises are 0 no temperature tells
-/// batches apart: the probe's zero does. None where fewer than two batches have readings. Allocates.
-inline std::optional<LevelFinding> level_finding(const Campaign& campaign, const std::string& name) {
+/// batches apart: the probe's zero does. Batches with fewer than `least_rows` readings say nothing; none of fewer than
+/// two others. Allocates.
+inline std::optional<LevelFinding> level_finding(const Campaign& campaign, const std::string& name,
+                                                 std::size_t least_rows = 12) {
   std::vector<double> starts;
   std::vector<std::size_t> batches;
   double squares = 0, freedom = 0;
@@ -30,11 +32,11 @@ inline std::optional<LevelFinding> level_finding(const Campaign& campaign, const
     const Index column = campaign[b].errors.find(name);
     if (column < 0) continue;
     const Vector error = campaign[b].errors.values.col(column);
+    const Series series(error);
+    if (series.size() < least_rows) continue;
     const ErrorStart start = error_start(error);
-    if (start.row < 0) continue;
     starts.push_back(start.value_um);
     batches.push_back(b);
-    const Series series(error);
     double mean = 0;
     for (const double value : series.values) mean += value / static_cast<double>(series.size());
     for (const double value : series.values) squares += (value - mean) * (value - mean);
