@@ -88,6 +88,8 @@ void print_summary(const TrainedModel& model, const std::vector<Predicted>& all,
     table.add(row);
   }
   console.print(table.text());
+  if (measured && model.error_reference != ErrorReference::recorded)
+    console.print(wrap("S of errors " + in_words(model.error_reference) + ".", 80, 0));
 }
 
 /// Says which batches a model on errors as recorded misses mostly by where their errors start.
