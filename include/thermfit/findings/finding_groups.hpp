@@ -42,6 +42,7 @@ inline int gravity(FindingRule rule) {
       return 0;
     case FindingRule::unit:
     case FindingRule::constant:
+    case FindingRule::level:
       return 1;
     case FindingRule::impossible:
       return 2;
