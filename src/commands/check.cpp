@@ -51,7 +51,7 @@ Exit run(const Arguments& arguments, Console& console) {
   reading.increasing_time = false;
   std::vector<CheckedBatch> checked;
   Campaign campaign = read_files(reading, console, arguments.positionals()).batches;
-  note_faults(campaign, TemperatureReference::rise, console);
+  note_first_rows(campaign, TemperatureReference::rise, console);
   CampaignFindings findings = find_faults(campaign);
   for (std::size_t b = 0; b < campaign.size(); ++b) checked.push_back({std::move(campaign[b]), std::move(findings[b])});
   console.print(arguments.has("--json") ? check_json(checked) : check_text(checked, arguments.has("--all")));

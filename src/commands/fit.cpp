@@ -135,6 +135,7 @@ Exit run_fit(const Arguments& arguments, Console& console) {
 
 Command fit_command() {
   std::vector<Option> options = campaign_options();
+  options.push_back(leave_out_option());
   options.push_back(absolute_option());
   options.push_back(error_reference_option());
   append(options, {{"--method", "M", "pls (default), mlr, pcr or ridge", 0, false}});

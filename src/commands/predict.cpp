@@ -144,7 +144,8 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   options.errors_may_lack = options.inputs_may_lack = true;
   if (!options.inputs) options.inputs = std::vector<std::string>{};
   const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
-  note_faults(campaign, model.reference, console);
+  note_faults(campaign, console);
+  note_first_rows(campaign, model.reference, console);
   note_starts(campaign, model.error_reference, false, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});

@@ -91,6 +91,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
 
 Command rank_command() {
   std::vector<Option> options = campaign_options();
+  options.push_back(leave_out_option());
   options.push_back(absolute_option());
   options.push_back(error_reference_option());
   append(options, {{"--rule", "RULE", "'correlation' (default) or 'fcgr'", 0, false},

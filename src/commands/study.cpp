@@ -96,6 +96,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
 
 Command study_command() {
   std::vector<Option> options = campaign_options();
+  options.push_back(leave_out_option());
   options.push_back(absolute_option());
   options.push_back(error_reference_option());
   append(options, fit_option_table());
