@@ -14,22 +14,33 @@ namespace {
 const char* const details =
     R"(Reads batches and says what is suspicious about them before anything is fitted. An overview gives rows, duration, usual time step and ranges; then a line a kind and channel tells how often, in how many batches, and of the worst its rows, figure and the limit of the rule that it breaks, worst first (--all: every finding):
 
-  time-gap    a time step of more than three times the usual one
+  time-gap    rows are missing: a time step too long for the clock and its scatter
   time-back   time that repeats or goes back
   missing     cells without a value
   constant    a temperature or thermal error that never moves
   stuck       one value for many rows, while other points say that it moved
   saturated   the same, at the largest or smallest thermal error
   stale       a thermal error that is read less often than it is written down
-  spike       a reading, or a few, far off those before and after
-  jump        a lasting step that no known input explains
+  spike       readings off those before and after: one, a few in a row, every second
+  jump        a lasting step, of one row or a few, that no input and no other channel explains
   collinear   a point that others give more closely than rounding allows
   unit        values that make sense in another unit only
+  range       a temperature that starts hot: right at a hot place, or in another unit
   impossible  a number that no machine can have: what an instrument writes without a reading
   copy        the numbers of another batch once more
   level       a thermal error that starts further apart in its batches than it moves in one: the probe's zero
+  step        another time step than in most batches
 
-Limits are multiples of each channel's own noise and resolution. Rows count from 1 at the first row of the batch. What cannot be read at all is an error, told with file:line:column.
+From four batches on, each temperature is predicted by the others as the other batches say:
+
+  drift       it leaves slowly what they say
+  gain        it moves more, or less
+  dead        it does not respond, though it should
+  swapped     it reads what another should
+  disagrees   it does not go with them, in no way that has a name
+  sign        a thermal error of opposite sign to what the other batches say
+
+Limits are multiples of each channel's own noise and resolution, or follow from its scatter over batches and a rate of one false alarm in a thousand campaigns. Rows count from 1 at the first row of the batch. What cannot be read at all is an error, told with file:line:column.
 Exit codes: 0 nothing found; 1 findings; 2 could not be read.)";
 
 std::vector<Option> options() {

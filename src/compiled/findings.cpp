@@ -2,4 +2,4 @@
 #include "thermfit/compiled.hpp"
 #undef THERMFIT_COMPILED_ELSEWHERE
 #define THERMFIT_COMPILED_ELSEWHERE
-#include "thermfit/findings/findings.hpp"
+#include "thermfit/findings/campaign_findings.hpp"

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "options/field_flags.hpp"
+#include "thermfit/findings/clock_findings.hpp"
 #include "thermfit/findings/series_scale.hpp"
 
 namespace thermfit::cli {

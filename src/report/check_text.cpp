@@ -6,6 +6,7 @@
 
 #include "cli/table.hpp"
 #include "options/field_flags.hpp"
+#include "thermfit/findings/clock_findings.hpp"
 #include "thermfit/findings/finding_groups.hpp"
 #include "thermfit/findings/series_scale.hpp"
 #include "thermfit/io/nearest.hpp"
@@ -155,12 +156,6 @@ std::string grouped_findings(const std::vector<CheckedBatch>& checked, const std
 }
 
 }  // namespace
-
-double usual_step_s(const Batch& batch) {
-  std::vector<double> steps;
-  for (Index row = 1; row < batch.time_s.size(); ++row) steps.push_back(batch.time_s(row) - batch.time_s(row - 1));
-  return median(steps);
-}
 
 std::string check_text(const std::vector<CheckedBatch>& checked, bool all) {
   CampaignFindings findings;

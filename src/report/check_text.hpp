@@ -15,11 +15,8 @@ struct CheckedBatch {
   std::vector<Finding> findings;
 };
 
-/// An overview of the batches, then the findings, a line a kind and channel with the worst first, or all of them, a line
-/// each, and a line that counts them.
+/// An overview of the batches, then the findings, a line a kind and channel with the worst first, or all of them, a
+/// line each, and a line that counts them.
 std::string check_text(const std::vector<CheckedBatch>& checked, bool all = false);
-
-/// The median step of the clock; 0 without one.
-double usual_step_s(const Batch& batch);
 
 }  // namespace thermfit::cli

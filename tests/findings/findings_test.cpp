@@ -50,6 +50,19 @@ const std::vector<Fault> faults{
     {FindingRule::spike, "T8", 45, 45, [](Batch& batch) { temperature(batch, 8)(45) -= 1.5; }},
     {FindingRule::spike, "T9", 50, 52, [](Batch& batch) { temperature(batch, 9).segment(50, 3).array() += 3; }},
     {FindingRule::spike, "T3", 30, 31, [](Batch& batch) { temperature(batch, 3).segment(30, 2).array() += 2; }},
+    {FindingRule::spike, "T3", 40, 44,
+     [](Batch& batch) {  // a burst of different ones
+       for (Index i = 0; i < 5; ++i)
+         temperature(batch, 3)(40 + i) += double(7 * i * i % 11 + 2) * (i % 2 == 0 ? 1 : -1);
+     }},
+    {FindingRule::spike, "T4", 0, 2, [](Batch& batch) { temperature(batch, 4).head(3).array() += 12; }},
+    {FindingRule::spike, "T4", 75, 78, [](Batch& batch) { temperature(batch, 4).tail(4).array() -= 12; }},
+    {FindingRule::jump, "T5", 40, 50, [](Batch& batch) { temperature(batch, 5).segment(40, 11).array() += 4; }},
+    {FindingRule::jump, "T5", 39, 43,
+     [](Batch& batch) {  // spread over four rows
+       for (Index row = 40; row < batch.rows(); ++row)
+         temperature(batch, 5)(row) += 7.5 * double(std::min<Index>(4, row - 39));
+     }},
     {FindingRule::spike, "Z", 20, 21, [](Batch& batch) { batch.errors.values.col(0).segment(20, 2).array() -= 80; }},
     {FindingRule::spike, "T4", 0, 0, [](Batch& batch) { temperature(batch, 4)(0) -= 12; }},
     {FindingRule::spike, "T4", 1, 1, [](Batch& batch) { temperature(batch, 4)(1) += 4; }},
@@ -86,7 +99,7 @@ const std::vector<Fault> faults{
     {FindingRule::collinear, "T10", 0, 78,
      [](Batch& batch) { temperature(batch, 10) = (temperature(batch, 1) + temperature(batch, 4)) / 2; }},
     {FindingRule::unit, "T4", 0, 0,
-     [](Batch& batch) { temperature(batch, 4) = (1.8 * temperature(batch, 4).array() + 32 + 8).matrix(); }},
+     [](Batch& batch) { temperature(batch, 4) = (1.8 * temperature(batch, 4).array() + 32).matrix(); }},
     {FindingRule::unit, "Z", 0, 0, [](Batch& batch) { batch.errors.values /= 1000; }},
     {FindingRule::missing, "T1", 20, 24,
      [](Batch& batch) { temperature(batch, 1).segment(20, 5).setConstant(std::nan("")); }},
@@ -155,6 +168,26 @@ TEST_CASE("each fault put into each batch of a campaign is found once, and nothi
   CHECK(found == tried);
 }
 
+TEST_CASE("every second or third reading wrong is found, each of them", "[batch]") {
+  for (const std::string& name : batch_names())
+    for (const Index every : {2, 3}) {
+      Batch batch = batch_of(name);
+      std::vector<Index> wrong;
+      for (Index row = 20; row < 60; row += every) {
+        temperature(batch, 3)(row) += 5;
+        wrong.push_back(row);
+      }
+      std::vector<Index> found;
+      for (const Finding& one : find_faults(batch)) {
+        CHECK(rule_name(one.rule) == "spike");
+        CHECK(one.channel == "T3");
+        CHECK(one.first_row == one.last_row);
+        found.push_back(one.first_row);
+      }
+      CHECK(found == wrong);
+    }
+}
+
 TEST_CASE("what is no fault is not taken for one", "[batch]") {
   const auto one_channel = [](const std::function<double(Index)>& value, Index rows = 200) {
     Batch batch;
@@ -191,6 +224,34 @@ TEST_CASE("what is no fault is not taken for one", "[batch]") {
     CHECK(told(find_faults(batch)).find("jump T1") == 0);
     batch.inputs = {{"coolant"}, Matrix::Zero(200, 1)};
     batch.inputs.values.bottomRows(100).setOnes();
+    CHECK(told(find_faults(batch)) == "");
+  }
+  SECTION("an error that is measured now and then, and held") {
+    Batch batch = batch_of("K01");
+    Index held = 0;
+    for (Index row = 0; row < batch.rows(); ++row) {
+      if (row - held > 2 + row * row % 4) held = row;
+      batch.errors.values(row, 0) = std::round(40 * batch.errors.values(held, 0)) / 40 + 0.01 * double(held % 7);
+    }
+    CHECK(told(find_faults(batch)) == "");
+  }
+  SECTION("a step that other channels make in the same row: the machine did something") {
+    Batch batch = batch_of("K01");
+    temperature(batch, 3).tail(39).array() -= 2;
+    temperature(batch, 4).tail(39).array() -= 1;
+    CHECK(told(find_faults(batch)) == "");
+  }
+  SECTION("a hot place, tenths of a degree: told, but no unit is advised") {
+    Batch batch = batch_of("K01");
+    temperature(batch, 3).array() += 140;
+    const std::vector<Finding> findings = find_faults(batch);
+    REQUIRE(findings.size() == 1);
+    CHECK(rule_name(findings[0].rule) == "range");
+    CHECK(findings[0].note.find("name the unit") == std::string::npos);
+  }
+  SECTION("a clock that is late now and then, and makes up for it") {
+    Batch batch = batch_of("K01");
+    for (Index row = 5; row + 1 < batch.rows(); row += 9) batch.time_s(row) += 250;
     CHECK(told(find_faults(batch)) == "");
   }
   SECTION("an input that never changes, and a clock with uneven steps") {

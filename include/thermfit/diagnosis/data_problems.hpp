@@ -30,7 +30,8 @@ std::vector<DataProblem> data_problems(const ThermalNetwork& machine, const Camp
     if (!one->names.empty()) result.push_back(std::move(*one));
   for (const Batch& batch : real)
     for (const Finding& one : find_faults(batch)) {
-      if (one.rule == FindingRule::collinear || one.rule == FindingRule::unit) continue;
+      if (one.rule == FindingRule::collinear || one.rule == FindingRule::unit || one.rule == FindingRule::range)
+        continue;
       result.push_back({Kind::finding, {}, batch.name, one.channel, std::string(rule_name(one.rule)), one.note});
     }
   return result;

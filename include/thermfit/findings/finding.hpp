@@ -19,17 +19,26 @@ enum class FindingRule {
   spike,       ///< a reading, or a few, far off those before and after
   jump,        ///< a lasting step between two rows that no input explains
   collinear,   ///< a temperature that others give to less than their resolution: a copy or a computed channel
-  unit,        ///< values that hint at another unit
+  unit,        ///< values that make sense in another unit only
   impossible,  ///< a number that no temperature of a machine, or error of it, can have: written without a reading
   copy,        ///< a batch that holds the numbers of another
-  level        ///< a thermal error that starts further apart in its batches than it moves in one
+  level,       ///< a thermal error that starts further apart in its batches than it moves in one
+  drift,       ///< a temperature that leaves slowly what the others say
+  gain,        ///< one that moves more, or less, than the others say: contact, unit
+  dead,        ///< one that does not respond, though the others say that it should
+  swapped,     ///< one that reads what another should
+  disagrees,   ///< one that does not go with the others, in no way that has a name; or such an error
+  sign,        ///< an error of opposite sign to what the other batches say
+  step,        ///< another time step than in the other batches
+  range        ///< a temperature that starts far from a workshop's: right at a hot place, or in another unit
 };
 
 /// The rule's name in tables and JSON. Does not allocate.
 inline std::string_view rule_name(FindingRule rule) {
-  constexpr std::string_view names[] = {"time-gap",  "time-back",  "missing", "constant", "stuck",
-                                        "saturated", "stale",      "spike",   "jump",     "collinear",
-                                        "unit",      "impossible", "copy",    "level"};
+  constexpr std::string_view names[] = {"time-gap",  "time-back", "missing", "constant",  "stuck", "saturated",
+                                        "stale",     "spike",     "jump",    "collinear", "unit",  "impossible",
+                                        "copy",      "level",     "drift",   "gain",      "dead",  "swapped",
+                                        "disagrees", "sign",      "step",    "range"};
   return names[static_cast<int>(rule)];
 }
 

@@ -41,8 +41,14 @@ inline int gravity(FindingRule rule) {
     case FindingRule::copy:
       return 0;
     case FindingRule::unit:
+    case FindingRule::sign:
     case FindingRule::constant:
     case FindingRule::level:
+    case FindingRule::dead:
+    case FindingRule::swapped:
+    case FindingRule::gain:
+    case FindingRule::drift:
+    case FindingRule::disagrees:
       return 1;
     case FindingRule::impossible:
       return 2;

@@ -9,8 +9,9 @@
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/frozen_findings.hpp"
 #include "thermfit/findings/impossible_findings.hpp"
+#include "thermfit/findings/judged_channel.hpp"
 #include "thermfit/findings/redundancy_findings.hpp"
-#include "thermfit/findings/transient_findings.hpp"
+#include "thermfit/findings/switching_rows.hpp"
 #include "thermfit/findings/unit_findings.hpp"
 
 namespace thermfit {
@@ -24,6 +25,8 @@ struct FindingLimits {
   FrozenLimits frozen;             ///< stuck and saturated channels
   StaleLimits stale;               ///< thermal errors read less often than written
   TransientLimits transient;       ///< spikes and jumps
+  HeldLimits held;                 ///< channels that are read now and then
+  CoincidenceLimits coincidence;   ///< what the other channels say to a jump
   RedundancyLimits redundancy;     ///< copies and computed temperatures
   UnitLimits units;                ///< values of another unit
   std::size_t constant_rows = 10;  ///< readings from which on a channel that never moves is told
@@ -48,34 +51,24 @@ std::vector<Finding> find_faults(const Batch& as_recorded, const FindingLimits& 
                                               channels.names[static_cast<std::size_t>(c)], limits.possible))
         findings.push_back(std::move(one));
   }
-  struct Judged {
-    Series series;
-    SeriesScale scale;
-    std::vector<Finding> transient;
-  };
-  const auto judged = [&](const Channels& channels, const std::string& unit) {
-    std::vector<Judged> all;
-    for (Index c = 0; c < channels.count(); ++c) {
-      all.push_back({Series(channels.values.col(c)), {}, {}});
-      Judged& one = all.back();
-      one.scale = series_scale(one.series);
-      if (one.series.size() >= limits.judged_rows)
-        one.transient = transient_findings(one.series, one.scale, switching,
-                                           channels.names[static_cast<std::size_t>(c)], unit, limits.transient);
-    }
-    return all;
-  };
-  const std::vector<Judged> temperatures = judged(batch.temperatures, "K"), errors = judged(batch.errors, "um");
+  std::vector<JudgedChannel> temperatures = judged_channels(batch.temperatures, "K", switching, limits.judged_rows,
+                                                            limits.transient, limits.held),
+                             errors = judged_channels(batch.errors, "um", switching, limits.judged_rows,
+                                                      limits.transient, limits.held);
+  consult_others(batch, temperatures, errors, limits.transient, limits.coincidence);
   MatrixX<Scalar> smooth = detail::despiked<Scalar>(batch.temperatures.values);
   for (Index c = 0; c < batch.temperatures.count(); ++c)  // at the ends no median takes a spike out
     for (const Finding& one : temperatures[static_cast<std::size_t>(c)].transient)
       if (one.rule == FindingRule::spike && (one.first_row < 2 || one.last_row + 2 >= batch.rows()))
         smooth.col(c).segment(one.first_row, one.last_row - one.first_row + 1).setConstant(std::nan(""));
+  const std::optional<detail::RowSums<Scalar>> sums = detail::row_sums<Scalar>(smooth);
   const auto check = [&](const Channels& channels, const Channels& recorded, bool is_error) {
     for (Index c = 0; c < channels.count(); ++c) {
       const std::string& name = channels.names[static_cast<std::size_t>(c)];
       const std::string unit = is_error ? "um" : "K";
-      const auto& [series, scale, transient] = (is_error ? errors : temperatures)[static_cast<std::size_t>(c)];
+      const JudgedChannel& judged = (is_error ? errors : temperatures)[static_cast<std::size_t>(c)];
+      const Series& series = judged.series;
+      const SeriesScale& scale = judged.scale;
       if (const auto lost = missing_finding(recorded.values.col(c), name)) findings.push_back(*lost);
       if (series.size() < 2) continue;
       if (scale.range() == 0) {
@@ -88,12 +81,13 @@ std::vector<Finding> find_faults(const Batch& as_recorded, const FindingLimits& 
       if (is_error) {
         if (const auto stale = stale_finding(series, name, limits.stale)) {
           findings.push_back(*stale);
+          if (judged.held) findings.insert(findings.end(), judged.transient.begin(), judged.transient.end());
           continue;
         }
       }
-      const auto frozen = frozen_finding<Scalar>(batch, smooth, c, is_error, series, scale, limits.frozen);
+      const auto frozen = frozen_finding<Scalar>(batch, smooth, c, is_error, series, scale, limits.frozen, sums);
       if (frozen) findings.push_back(*frozen);
-      for (const Finding& one : transient)
+      for (const Finding& one : judged.transient)
         if (!frozen || one.last_row < frozen->first_row || one.first_row > frozen->last_row + 1)
           findings.push_back(one);
     }

@@ -77,6 +77,21 @@ MatrixX<Scalar> despiked(const MatrixX<Scalar>& values) {
   return smooth;
 }
 
+/// Temperatures of a batch (despiked) about their means, and their products, so that a regression that leaves a few
+/// rows out need not visit the others. Only where every number is there.
+template <typename Scalar>
+struct RowSums {
+  MatrixX<Scalar> values, products;
+};
+
+template <typename Scalar>
+std::optional<RowSums<Scalar>> row_sums(const MatrixX<Scalar>& temperatures) {
+  if (temperatures.rows() == 0 || temperatures.cols() == 0 || !temperatures.allFinite()) return std::nullopt;
+  RowSums<Scalar> sums{temperatures.rowwise() - temperatures.colwise().mean(), {}};
+  sums.products = sums.values.transpose() * sums.values;
+  return sums;
+}
+
 /// How far the other temperatures say that a channel moved within rows first … last: least squares outside these rows
 /// (a little ridge, since thermometers are collinear), used inside. Range of the prediction and residual scatter. Where
 /// the rows outside are too few for all, the mean of the others stands for them.
@@ -119,6 +134,43 @@ std::optional<ExpectedMove> expected_move(MatrixX<Scalar> others, const Eigen::R
                       std::sqrt((target - design * weights).squaredNorm() / static_cast<double>(count - columns))};
 }
 
+/// The same from sums: `channel` is a temperature, `own` its column, or an error (`own` -1).
+template <typename Scalar>
+std::optional<ExpectedMove> expected_move(const RowSums<Scalar>& sums, const Eigen::Ref<const VectorX<Scalar>>& channel,
+                                          Index own, Index first, Index last) {
+  std::vector<Index> others;
+  for (Index c = 0; c < sums.values.cols(); ++c)
+    if (c != own) others.push_back(c);
+  const auto columns = static_cast<Index>(others.size());
+  const Index length = last - first + 1, count = sums.values.rows() - length;
+  if (columns == 0 || count < columns + rows_beside_prediction || !channel.allFinite()) return std::nullopt;
+  const VectorX<Scalar> centred = channel.array() - channel.mean();
+  const MatrixX<Scalar> inside = sums.values.middleRows(first, length);
+  const VectorX<Scalar> inside_own = centred.segment(first, length);
+  const VectorX<Scalar> sum = inside.colwise().sum();  // all sum to nothing, so those outside sum to minus that
+  const VectorX<Scalar> all = sums.values.transpose() * centred;
+  const Scalar sum_own = inside_own.sum(), rows = static_cast<Scalar>(count);
+  MatrixX<Scalar> normal(columns, columns), moved(length, columns);
+  VectorX<Scalar> target(columns);
+  for (Index i = 0; i < columns; ++i) {
+    const Index a = others[static_cast<std::size_t>(i)];
+    target(i) = all(a) - inside.col(a).dot(inside_own) - sum(a) * sum_own / rows;
+    moved.col(i) = inside.col(a);
+    for (Index j = 0; j <= i; ++j) {
+      const Index b = others[static_cast<std::size_t>(j)];
+      normal(i, j) = normal(j, i) = sums.products(a, b) - inside.col(a).dot(inside.col(b)) - sum(a) * sum(b) / rows;
+    }
+  }
+  const MatrixX<Scalar> plain = normal;
+  normal.diagonal().array() += prediction_ridge * normal.trace() / static_cast<double>(columns) + 1e-30;
+  const VectorX<Scalar> weights = normal.ldlt().solve(target);
+  const VectorX<Scalar> predicted = moved * weights;
+  const double own_left = centred.squaredNorm() - inside_own.squaredNorm() - sum_own * sum_own / rows;
+  const double left = own_left - 2 * weights.dot(target) + weights.dot(plain * weights);
+  return ExpectedMove{predicted.maxCoeff() - predicted.minCoeff(),
+                      std::sqrt(std::max(left, 0.0) / static_cast<double>(count - columns))};
+}
+
 template <typename Scalar>
 MatrixX<Scalar> without_column(const MatrixX<Scalar>& matrix, Index column) {
   MatrixX<Scalar> others(matrix.rows(), matrix.cols() - 1);
@@ -135,11 +187,12 @@ MatrixX<Scalar> without_column(const MatrixX<Scalar>& matrix, Index column) {
 /// A run is suspicious when the other temperatures say that the channel moved, when the channel's own noise makes it
 /// improbable, and, at the end of a thermal error's range, when it is reached in full motion.
 /// `column` counts within the temperatures or, where `is_error`, the thermal errors; `series` and `scale` are those of
-/// that channel. Allocates.
+/// that channel; `sums`, where given, are those of the batch, and spare the visit of all rows. Allocates.
 template <typename Scalar>
 std::optional<Finding> frozen_finding(const Batch& batch, const MatrixX<Scalar>& temperatures, Index column,
                                       bool is_error, const Series& series, const SeriesScale& scale,
-                                      const FrozenLimits& limits = {}) {
+                                      const FrozenLimits& limits = {},
+                                      const std::optional<detail::RowSums<Scalar>>& sums = std::nullopt) {
   const Channels& channels = is_error ? batch.errors : batch.temperatures;
   const std::string unit = is_error ? "um" : "K";
   std::vector<detail::EqualRun> runs = detail::equal_runs(series.values);
@@ -154,9 +207,12 @@ std::optional<Finding> frozen_finding(const Batch& batch, const MatrixX<Scalar>&
     const bool improbable =
         run.length() >= limits.improbable_rows && static_cast<double>(run.length() - 1) * std::log(same) <
                                                       std::log(limits.improbable / static_cast<double>(series.size()));
-    const auto move =
-        detail::expected_move<Scalar>(is_error ? temperatures : detail::without_column(temperatures, column),
-                                      channels.values.col(column), first, last);
+    std::optional<detail::ExpectedMove> move;
+    if (sums)
+      move = detail::expected_move<Scalar>(*sums, channels.values.col(column), is_error ? -1 : column, first, last);
+    if (!move)
+      move = detail::expected_move<Scalar>(is_error ? temperatures : detail::without_column(temperatures, column),
+                                           channels.values.col(column), first, last);
     const double limit =
         move ? std::max(limits.moved_steps * scale.resolution, limits.moved_scatter * move->scatter) : 0;
     const bool moved = move && move->range > limit;

@@ -62,6 +62,12 @@ inline Unfit unfit(FindingRule rule) {
       return Unfit::rows;
     case FindingRule::jump:
       return Unfit::after;
+    case FindingRule::drift:
+    case FindingRule::gain:
+    case FindingRule::dead:
+    case FindingRule::swapped:
+    case FindingRule::disagrees:
+    case FindingRule::sign:
     case FindingRule::constant:
     case FindingRule::unit:
       return Unfit::channel;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <cmath>
 #include <string>
@@ -31,8 +32,29 @@ std::vector<Finding> redundancy_findings(const Batch& batch, const RedundancyLim
   const Index rows = values.rows();
   std::vector<Index> used;
   std::vector<double> resolutions;
+  const MatrixX<Scalar> centred = values.rowwise() - values.colwise().mean();
+  const MatrixX<Scalar> products = centred.transpose() * centred;
+  // The same as `ratio` from products, which are dear once only; sure where it is far from the limit and from rounding.
+  const auto far_from_redundant = [&](Index column, double resolution, const std::vector<std::size_t>& chosen) {
+    const auto count = static_cast<Index>(chosen.size());
+    MatrixX<Scalar> normal(count, count);
+    VectorX<Scalar> target(count);
+    for (Index i = 0; i < count; ++i) {
+      const Index a = used[chosen[static_cast<std::size_t>(i)]];
+      target(i) = products(a, column);
+      for (Index j = 0; j < count; ++j) normal(i, j) = products(a, used[chosen[static_cast<std::size_t>(j)]]);
+    }
+    const VectorX<Scalar> weights = normal.ldlt().solve(target);
+    double floor = resolution * resolution;
+    for (Index i = 0; i < count; ++i)
+      floor += std::pow(weights(i) * resolutions[chosen[static_cast<std::size_t>(i)]], 2);
+    const double left = products(column, column) - weights.dot(target);
+    return left > 1e-8 * products(column, column) &&
+           left / static_cast<double>(rows - count - 1) > std::pow(2 * limits.of_rounding, 2) * floor / 12;
+  };
   // How far `column` is from what `columns` give: residual scatter over rounding floor.
   const auto ratio = [&](Index column, double resolution, const std::vector<std::size_t>& chosen) {
+    if (far_from_redundant(column, resolution, chosen)) return HUGE_VAL;
     const auto count = static_cast<Index>(chosen.size());
     MatrixX<Scalar> design(rows, count + 1);
     design.col(0).setOnes();

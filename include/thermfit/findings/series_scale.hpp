@@ -40,7 +40,7 @@ struct SeriesScale {
   double lowest = 0;      ///< smallest value
   double highest = 0;     ///< largest value
   double resolution = 0;  ///< smallest difference between two of its values; 0 for a constant channel
-  double noise = 0;       ///< standard deviation, by white_noise(): blind to drift and steps
+  double noise = 0;       ///< standard deviation, by white_noise(): blind to drift, steps and bad readings
 
   /// From the smallest to the largest value.
   double range() const { return highest - lowest; }
@@ -61,7 +61,13 @@ inline SeriesScale series_scale(const Series& series) {
   for (std::size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i] - sorted[i - 1] > rounding) smallest = std::min(smallest, sorted[i] - sorted[i - 1]);
   scale.resolution = smallest;
-  scale.noise = white_noise(std::vector<std::vector<double>>{series.values});
+  const std::vector<std::vector<double>> one{series.values};
+  scale.noise = white_noise(one);
+  // One reading in two, three or five wrong is in most second differences, but not in those over two or three rows, and
+  // not in the smallest.
+  if (scale.noise > scale.resolution)
+    for (const double other : {white_noise(one, 2), white_noise(one, 3), white_noise(one, 1, true)})
+      if (other < scale.noise / 2 && other > scale.resolution / 2) scale.noise = other;
   return scale;
 }
 

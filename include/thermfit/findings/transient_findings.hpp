@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/findings/course.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/series_scale.hpp"
 
@@ -37,119 +38,136 @@ struct TransientLimits {
   }
 };
 
-/// When a change of an input is a switch that may make readings jump.
-struct SwitchLimits {
-  double least_share = 0.05;    ///< of the input's range: less is a measured input that dithers, or a counter
-  double busiest_share = 0.25;  ///< of the rows: an input that changes more often is not switched
-};
-
-/// Rows in which a known input is switched to another level, increasing. Allocates.
-inline std::vector<Index> switching_rows(const Channels& inputs, const SwitchLimits& limits = {}) {
-  std::vector<Index> rows;
-  for (Index c = 0; c < inputs.count(); ++c) {
-    const Series series(inputs.values.col(c));
-    const SeriesScale scale = series_scale(series);
-    std::vector<Index> own;
-    for (std::size_t i = 1; i < series.size(); ++i)
-      if (std::abs(series.values[i] - series.values[i - 1]) > limits.least_share * scale.range())
-        own.push_back(series.rows[i]);
-    if (static_cast<double>(own.size()) <= limits.busiest_share * static_cast<double>(inputs.values.rows()))
-      rows.insert(rows.end(), own.begin(), own.end());
-  }
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-  return rows;
-}
-
-namespace detail {
-
-/// Steps from one reading to the next that are no part of a smooth course: beyond the limit away from the steps around
-/// and so many times as large as each of them, but for one that takes it back. Step i leads to reading i.
-inline std::vector<std::size_t> abrupt_steps(const std::vector<double>& values, const TransientLimits& limits,
-                                             double limit) {
-  const double over_steps = limits.jump_over_steps;
-  std::vector<std::size_t> found;
-  const auto step = [&](std::size_t i) { return values[i] - values[i - 1]; };
-  for (std::size_t i = 3; i + 2 < values.size(); ++i) {
-    std::array<double, 4> around{step(i - 2), step(i - 1), step(i + 1), step(i + 2)};
-    for (const std::size_t outer : {std::size_t{0}, std::size_t{3}})  // a spike of two rows: the step back is no trend
-      if (around[outer] * step(i) < 0 && std::abs(around[outer] + step(i)) < limits.back_share * std::abs(step(i)))
-        around[outer] = around[outer == 0 ? 1 : 2];
-    std::sort(around.begin(), around.end());
-    const double trend = (around[1] + around[2]) / 2, largest = std::max(std::abs(around[0]), std::abs(around[3]));
-    if (std::abs(step(i) - trend) > limit && std::abs(step(i)) > over_steps * largest) found.push_back(i);
-  }
-  return found;
-}
-
-}  // namespace detail
-
 /// Spikes and jumps of a series, in order of rows; `switching` holds rows in order.
 ///
 /// A spike leaves the range of the two readings before and the two after, and its neighbours' second differences have
-/// the opposite sign: a corner of the true course has not. A jump leaves the local trend and is larger than the steps
-/// around it; a jump that is soon taken back is a spike too. Rows just after an input has switched may jump; nothing
-/// excuses a spike. The first and last readings are off when they leave the others by a step far larger than the next.
-/// `unit` is that of the series. Allocates.
+/// the opposite sign: a corner of the true course has not. Of what remains series_course() tells the readings that are
+/// off, several in a row or alternate ones (spikes as well), from breaks (jumps). A break may follow a switch of an
+/// input or rows that are missing; nothing excuses a spike. The first and last readings are off when they leave the
+/// others by a step far larger than the next. A break that is taken back later is told once. `unit` is that of the
+/// series. Allocates.
 inline std::vector<Finding> transient_findings(const Series& series, const SeriesScale& scale,
                                                const std::vector<Index>& switching, const std::string& name,
                                                const std::string& unit, const TransientLimits& limits = {}) {
   const std::vector<double>& x = series.values;
   const double spike_limit = limits.spike_of(scale), jump_limit = limits.jump_of(scale);
   std::vector<Finding> findings;
-  const auto after_gap = [&](std::size_t i) { return series.rows[i] > series.rows[i - 1] + 1; };
-  const auto explained = [&](std::size_t i) {
+  if (x.size() < 3) return findings;
+  const auto explained = [&](std::size_t i, std::size_t before) {
     const Index row = series.rows[i];
     const auto at = std::upper_bound(switching.begin(), switching.end(), row);
-    return after_gap(i) || (at != switching.begin() && row <= *std::prev(at) + limits.settling_rows);
+    return series.rows[before] + static_cast<Index>(i - before) < row ||
+           (at != switching.begin() && row <= *std::prev(at) + limits.settling_rows);
   };
+  const auto spike = [&](std::size_t first, std::size_t last, double size, double limit, const char* note) {
+    findings.push_back({FindingRule::spike, name, series.rows[first], series.rows[last], size, limit, unit, note});
+  };
+  std::vector<bool> off(x.size(), false);
   const auto bend = [&](std::size_t i) { return x[i] - (x[i - 1] + x[i + 1]) / 2; };
-  std::vector<bool> spiked(x.size(), false);
   const std::size_t last = x.size() - 1;
   for (std::size_t i = 1; x.size() > 4 && i < last; ++i) {
     const auto [low, high] =
         std::minmax({x[i < 2 ? i + 2 : i - 2], x[i - 1], x[i + 1], x[i + 2 > last ? i - 2 : i + 2]});
     const double beyond = std::max(x[i] - high, low - x[i]);
-    if (beyond <= spike_limit || after_gap(i)) continue;
+    if (beyond <= spike_limit * (1 + 1e-9)) continue;
     const double sign = x[i] > high ? 1 : -1, size = sign * bend(i), back = limits.corner_share * size;
     if ((i > 1 && -sign * bend(i - 1) < back) || (i + 1 < last && -sign * bend(i + 1) < back)) continue;
-    spiked[i] = true;
-    findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[i], beyond, spike_limit, unit,
-                        "off the readings around it: contact, interference?"});
+    off[i] = true;
+    spike(i, i, beyond, spike_limit, "off the readings around it: contact, interference?");
   }
-  const std::vector<std::size_t> steps = detail::abrupt_steps(x, limits, jump_limit);
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    const std::size_t i = steps[k];
-    const double size = x[i] - x[i - 1];
-    if (spiked[i] || spiked[i - 1]) continue;
-    if (k + 1 < steps.size() && steps[k + 1] - i <= limits.back_within_rows) {
-      const double back = x[steps[k + 1]] - x[steps[k + 1] - 1];
-      if (size * back < 0 && std::abs(size + back) < limits.back_share * std::abs(size)) {
-        findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[steps[k + 1] - 1], std::abs(size),
-                            jump_limit, unit, "off the readings around them: contact, interference?"});
+  for (const bool front : {true, false}) {  // at the ends a course has one side only
+    const auto at = [&](std::size_t k) { return front ? k : last - k; };
+    const auto step = [&](std::size_t k) { return std::abs(x[at(k)] - x[at(k - 1)]); };
+    for (std::size_t bad = 1; bad <= limits.back_within_rows && bad + 8 < x.size(); ++bad) {
+      if (off[at(bad)]) break;
+      double largest = 0;
+      for (std::size_t k = bad + 1; k <= bad + 7; ++k) largest = std::max(largest, step(k));
+      if (step(bad) <= std::max(jump_limit, limits.edge_over_steps * largest) * (1 + 1e-9)) continue;
+      if (front ? explained(bad, bad - 1) : explained(at(bad - 1), at(bad))) break;
+      for (std::size_t k = 0; k < bad; ++k) off[at(k)] = true;
+      spike(std::min(at(0), at(bad - 1)), std::max(at(0), at(bad - 1)), step(bad), jump_limit,
+            front ? "the first readings are off those that follow: a default, a contact?"
+                  : "the last readings are off those before: cut off, a contact?");
+      break;
+    }
+  }
+  std::vector<std::size_t> kept;
+  std::vector<double> values;
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i <= last; ++i)
+    if (!off[i]) {
+      kept.push_back(i);
+      values.push_back(x[i]);
+      rows.push_back(series.rows[i]);
+    }
+  const SeriesCourse course =
+      series_course(values, rows, {jump_limit, limits.jump_over_steps, limits.back_within_rows},
+                    [&](std::size_t from, std::size_t to) { return explained(kept[to], kept[from]); });
+  std::vector<SeriesCourse::Break> breaks = course.breaks;
+  for (std::size_t o = 0; o < course.off.size();) {
+    std::size_t end = o + 1;
+    while (end < course.off.size() && course.off[end] == course.off[end - 1] + 1) ++end;
+    const std::size_t first = course.off[o], final = course.off[end - 1];
+    o = end;
+    // Readings off the course leave it and come back by a step; what only comes back is a course that broke there.
+    const auto away = [&](std::size_t in, std::size_t out, std::size_t further) {
+      return std::abs(values[in] - values[out] - (values[out] - values[further])) > jump_limit;
+    };
+    const auto alone =
+        [&](const SeriesCourse::Break& at) {  // far larger than the steps around it, in whatever direction
+          double largest = 0;
+          for (std::size_t i = at.from < 2 ? 1 : at.from - 1; i <= std::min(at.to + 2, values.size() - 1); ++i)
+            if (i != at.to) largest = std::max(largest, std::abs(values[i] - values[i - 1]));
+          return std::abs(values[at.to] - values[at.from]) > limits.jump_over_steps * largest;
+        };
+    const bool leaves = first < 2 || away(first, first - 1, first - 2),
+               returns = final + 2 >= values.size() || away(final, final + 1, final + 2);
+    const SeriesCourse::Break broken =
+        leaves ? SeriesCourse::Break{first - 1, first} : SeriesCourse::Break{final, final + 1};
+    if (leaves != returns && alone(broken)) breaks.push_back(broken);
+    if (!leaves || !returns) continue;
+    double size = 0;
+    for (std::size_t i = first; i <= final; ++i) {
+      const double along =
+          static_cast<double>(rows[i] - rows[first - 1]) / static_cast<double>(rows[final + 1] - rows[first - 1]);
+      size = std::max(size, std::abs(values[i] - values[first - 1] - along * (values[final + 1] - values[first - 1])));
+    }
+    if (size > jump_limit)
+      spike(kept[first], kept[final], size, jump_limit,
+            first == final ? "off the readings around it: contact, interference?"
+                           : "off the readings around them: contact, interference?");
+  }
+  std::sort(breaks.begin(), breaks.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
+  for (std::size_t k = 0; k < breaks.size(); ++k) {
+    const auto size = [&](std::size_t b) { return values[breaks[b].to] - values[breaks[b].from]; };
+    const std::size_t from = kept[breaks[k].from], to = kept[breaks[k].to];
+    if (explained(to, from)) continue;
+    if (k + 1 < breaks.size() && size(k) * size(k + 1) < 0 &&
+        std::abs(size(k) + size(k + 1)) < limits.back_share * std::abs(size(k))) {
+      const std::size_t back = kept[breaks[k + 1].from];
+      if (back - to < x.size() / 2 && !explained(kept[breaks[k + 1].to], back)) {
+        findings.push_back({FindingRule::jump, name, series.rows[to], series.rows[back], std::abs(size(k)), jump_limit,
+                            unit, "off by that, and back: a contact?"});
         ++k;
         continue;
       }
     }
-    if (!explained(i))
-      findings.push_back({FindingRule::jump, name, series.rows[i - 1], series.rows[i], std::abs(size), jump_limit, unit,
-                          "a lasting step that no input explains: sensor moved, probe zeroed?"});
+    findings.push_back({FindingRule::jump, name, series.rows[from], series.rows[to], std::abs(size(k)), jump_limit,
+                        unit, "a lasting step that no input explains: sensor moved, probe zeroed?"});
   }
-  const auto edge = [&](std::size_t i, auto step) {  // step(k): from the reading at the edge inwards
-    double largest = 0;
-    for (int k = 2; k <= 8; ++k) largest = std::max(largest, std::abs(step(k)));
-    if (std::abs(step(1)) > std::max(jump_limit, limits.edge_over_steps * largest))
-      findings.push_back({FindingRule::spike, name, series.rows[i], series.rows[i], std::abs(step(1)), jump_limit, unit,
-                          i == 0 ? "the first reading is off those that follow: a default, a contact?"
-                                 : "the last reading is off those before: cut off, a contact?"});
-  };
-  if (x.size() > 9 && !spiked[1] && !explained(1))
-    edge(0, [&](int k) { return x[std::size_t(k)] - x[std::size_t(k) - 1]; });
-  if (x.size() > 9 && !spiked[last - 1] && !explained(last))
-    edge(last, [&](int k) { return x[last - std::size_t(k)] - x[last - std::size_t(k) + 1]; });
   std::sort(findings.begin(), findings.end(),
             [](const Finding& a, const Finding& b) { return a.first_row < b.first_row; });
-  return findings;
+  std::vector<Finding> joined;  // spikes of rows that touch are one
+  for (Finding& one : findings) {
+    if (!joined.empty() && one.rule == FindingRule::spike && joined.back().rule == FindingRule::spike &&
+        one.first_row <= joined.back().last_row + 1) {
+      joined.back().last_row = std::max(joined.back().last_row, one.last_row);
+      joined.back().figure = std::max(joined.back().figure, one.figure);
+    } else {
+      joined.push_back(std::move(one));
+    }
+  }
+  return joined;
 }
 
 /// How far the first reading of a temperature is off those that follow, K; 0 where it is not, or may be a start: what a
