@@ -23,7 +23,8 @@ struct CourseLimits {
 struct SeriesCourse {
   /// From one reading of the course to the next.
   struct Break {
-    std::size_t from, to;
+    std::size_t from;  ///< the last reading before
+    std::size_t to;    ///< the first one after
   };
   std::vector<std::size_t> off;  ///< readings off the course, increasing
   std::vector<Break> breaks;     ///< increasing

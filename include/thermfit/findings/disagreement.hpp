@@ -28,7 +28,8 @@ template <typename Scalar = double>
 struct Disagreement {
   std::size_t batch;        ///< index of the batch
   Index channel;            ///< index of the channel
-  double rms, limit;        ///< residual, and what is usual for this channel in this batch, in its unit
+  double rms;               ///< of its residual, in its unit
+  double limit;             ///< what of it is usual for this channel in this batch
   std::vector<Index> kept;  ///< channels it was predicted by, with itself, ascending
   MatrixX<Scalar> weights;  ///< as in LeaveOutResiduals, for `kept`
 };
