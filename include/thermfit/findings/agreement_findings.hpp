@@ -173,8 +173,14 @@ void add_agreement_findings(const Campaign& campaign, std::vector<std::vector<Fi
           {FindingRule::swapped, own, 0, 0, read.size() - 1,
            "what it should read is in " + campaign[0].temperatures.names[std::size_t(other)] + ": sensors swapped?"});
     }
-    const auto best =
-        std::min_element(ways.begin(), ways.end(), [](const auto& x, const auto& y) { return x.left < y.left; });
+    // That another faulty sensor reads what this one should is no accident: it comes before what explains more.
+    const double enough = all / 4;
+    const auto best = std::min_element(ways.begin(), ways.end(), [&](const auto& x, const auto& y) {
+      const auto rank = [&](const detail::Explained& way) {
+        return std::make_pair(way.rule != FindingRule::swapped || way.left >= enough, way.left);
+      };
+      return rank(x) < rank(y);
+    });
     const std::string& name = campaign[0].temperatures.names[static_cast<std::size_t>(one.channel)];
     Finding finding{FindingRule::disagrees,
                     name,
@@ -184,7 +190,7 @@ void add_agreement_findings(const Campaign& campaign, std::vector<std::vector<Fi
                     one.limit,
                     "K",
                     "does not go with the other sensors as in the other batches"};
-    if (best->left < all / 4) {
+    if (best->left < enough) {
       finding.rule = best->rule;
       finding.first_row = rows[best->first];
       finding.last_row = rows[best->last];
