@@ -1,3 +1,5 @@
+#include <functional>
+
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
@@ -5,11 +7,14 @@
 #include "options/error_reference.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
+#include "options/transfer_options.hpp"
 #include "report/model_text.hpp"
+#include "report/transfer_text.hpp"
 #include "thermfit/fit/jackknife.hpp"
 #include "thermfit/fit/train.hpp"
 #include "thermfit/io/json/model.hpp"
 #include "thermfit/number.hpp"
+#include "thermfit/robustness/transfer_left_out.hpp"
 #include "thermfit/select/correlation.hpp"
 #include "thermfit/select/fcgr.hpp"
 
@@ -24,10 +29,17 @@ const char* const details =
     "Points are the --points most sensitive ones (see rank), or all that --temperatures names with --points all. "
     "--each-batch fits every batch by itself and saves one model a batch in --output-folder. Nearly dependent "
     "temperatures make MLR refuse the fast way over moments; --row-wise goes over the rows by QR.\n"
+    "--method transfer fits what carries over to the next batch: the rises of all points, the same through a "
+    "first-order "
+    "lag, and those times the climate (how warm the machine is where a batch starts), by ridge with a penalty for "
+    "each. "
+    "Penalties and lag are chosen by leaving batches out, and what does not pay vanishes; predict takes such a model. "
+    "--error-reference start goes well with it.\n"
     "--json prints the model document instead of words.";
 
-std::vector<Index> chosen_points(const Campaign& campaign, const Arguments& arguments, TrainingPlan& plan) {
-  const Index count = require_points(arguments, campaign, 2);
+std::vector<Index> chosen_points(const Campaign& campaign, const Arguments& arguments, TrainingPlan& plan,
+                                 Index fallback = 2) {
+  const Index count = require_points(arguments, campaign, fallback);
   const std::string rule = arguments.choice("--rule", {"correlation", "fcgr"}, "correlation");
   if (count == campaign.front().temperatures.count()) {
     plan.selection = arguments.has("--temperatures") ? "given" : "all";
@@ -97,6 +109,44 @@ Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan
   return Exit::done;
 }
 
+/// Prints the model, or saves it, as the options say.
+void deliver(const TrainedModel& model, const Arguments& arguments, const std::optional<std::string>& output,
+             const std::function<void()>& print, Console& console) {
+  if (arguments.has("--json"))
+    console.line(model_to_json(model).dump(1));
+  else
+    print();
+  if (!output) return;
+  save_model(model, *output);
+  console.note("model written to " + *output);
+}
+
+Exit fit_to_transfer(const Campaign& campaign, const Arguments& arguments, TrainingPlan& points_of,
+                     const std::optional<std::string>& output, Console& console) {
+  for (const char* option : {"--absolute", "--row-wise", "--each-batch", "--components", "--ridge-lambda"})
+    if (arguments.has(option)) throw UsageError(std::string(option) + " does not go with --method transfer");
+  TransferPlan plan = transfer_plan(arguments, points_of.error_reference);
+  plan.points = chosen_points(campaign, arguments, points_of, campaign.front().temperatures.count());
+  plan.selection = points_of.selection;
+  note_lacking_blocks(campaign, plan, console);
+  const TrainedModel model = train_transfer(campaign, plan);
+  note_limits(model, points_of, "", console);
+  deliver(
+      model, arguments, output,
+      [&] {
+        print_model(model, console);
+        if (campaign.size() < 3) return;
+        const TransferData<> data = transfer_data(campaign, plan);
+        const auto errors = static_cast<Index>(model.errors.size());
+        const TransferLeftOut<> left_out = transfer_left_out(data.batches, errors, data.options);
+        console.line("\nEach batch predicted by a model of the others, all chosen without it:");
+        for (std::size_t e = 0; e < model.errors.size(); ++e)
+          console.line("  " + model.errors[e] + ": " + in_words(left_out.figure(e)));
+      },
+      console);
+  return Exit::done;
+}
+
 Exit run_fit(const Arguments& arguments, Console& console) {
   const auto output = output_path(arguments);
   TrainingPlan plan;
@@ -106,7 +156,10 @@ Exit run_fit(const Arguments& arguments, Console& console) {
   const Campaign campaign = learning_campaign(arguments, console, plan.reference);
   note_starts(campaign, plan.error_reference, true, console);
   plan.row_wise = arguments.has("--row-wise");
-  const std::string method = arguments.choice("--method", {"pls", "mlr", "pcr", "ridge"}, "pls");
+  const std::string method = arguments.choice("--method", {"pls", "mlr", "pcr", "ridge", "transfer"}, "pls");
+  if (method == "transfer") return fit_to_transfer(campaign, arguments, plan, output, console);
+  for (const char* option : {"--features", "--lag"})
+    if (arguments.has(option)) throw UsageError(std::string(option) + " goes with --method transfer");
   for (const Method one : {Method::pls, Method::mlr, Method::pcr, Method::ridge})
     if (method == name(one)) plan.method = one;
   if (arguments.has("--each-batch")) return fit_each(campaign, arguments, plan, console);
@@ -118,16 +171,13 @@ Exit run_fit(const Arguments& arguments, Console& console) {
   const TrainedModel model = train(campaign, plan);
   note_probe_levels(model, console);
   note_limits(model, plan, "", console);
-  if (arguments.has("--json")) {
-    console.line(model_to_json(model).dump(1));
-  } else {
-    print_model(model, console);
-    print_jackknife(campaign, model, plan, console);
-  }
-  if (output) {
-    save_model(model, *output);
-    console.note("model written to " + *output);
-  }
+  deliver(
+      model, arguments, output,
+      [&] {
+        print_model(model, console);
+        print_jackknife(campaign, model, plan, console);
+      },
+      console);
   return Exit::done;
 }
 
@@ -138,9 +188,10 @@ Command fit_command() {
   options.push_back(leave_out_option());
   options.push_back(absolute_option());
   options.push_back(error_reference_option());
-  append(options, {{"--method", "M", "pls (default), mlr, pcr or ridge", 0, false}});
+  append(options, {{"--method", "M", "pls (default), mlr, pcr, ridge or transfer", 0, false}});
   append(options, fit_option_table());
-  append(options, {{"--points", "K", "how many temperature points, or 'all' (default 2)", 0, false},
+  append(options, transfer_option_table());
+  append(options, {{"--points", "K", "how many temperature points, or 'all' (default 2; of transfer: all)", 0, false},
                    {"--rule", "RULE", "how they are chosen: 'correlation' (default) or 'fcgr'", 0, false},
                    {"--row-wise", "", "QR and NIPALS over the rows instead of moments", 0, false},
                    {"--each-batch", "", "one model a batch instead of one of all", 0, false},
@@ -149,12 +200,13 @@ Command fit_command() {
                    {"--output", "FILE", "save the model, whole or not at all", 'o', false}});
   return {
       "fit",
-      "a model of the thermal error: PLS, MLR, PCR or ridge",
+      "a model of the thermal error: PLS, MLR, PCR, ridge or transfer",
       "BATCH.csv|FOLDER …",
       details,
       options,
       {{"thermfit fit data/vcenter55 -o model.json", "one PLS model on the two most sensitive points"},
-       {"thermfit fit data/vcenter55 --method mlr --temperatures T1,T6,T8 --points all", "MLR on points of one's own"}},
+       {"thermfit fit data/vcenter55 --method mlr --temperatures T1,T6,T8 --points all", "MLR on points of one's own"},
+       {"thermfit fit data/vcenter55 --method transfer -o model.json", "one that carries over to the next batch"}},
       run_fit};
 }
 

@@ -1,6 +1,5 @@
-#include "thermfit/model/predict.hpp"
-
 #include <algorithm>
+#include <cmath>
 
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
@@ -12,6 +11,7 @@
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/json/model.hpp"
 #include "thermfit/io/nearest.hpp"
+#include "thermfit/model/probe.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -24,6 +24,9 @@ const char* const details =
     "Prints CSV: batch, row (from 1), time_min where there is a time, <error>_predicted in um, <error>_residual "
     "(prediction minus measurement) where the error was measured, T2, SPE, and domain: inside, beyond95, beyond99. "
     "With --summary one line a batch instead: S where measured, and the share of foreign rows.\n"
+    "--probe-every and --probe show what a probe on the machine would bring: the measured error of a row, less the "
+    "predicted one, is added to all later predictions until the next reading. A reading more than six standard "
+    "deviations of training off the last is taken only when the next one agrees.\n"
     "--json prints thermfit-prediction/1: per batch \"S_um\", \"beyond95\", \"beyond99\" (shares) and the rows.\n"
     "Exit codes: 0 done; 1 with --limit, when S of a batch exceeds it; 2 could not be done.";
 
@@ -131,6 +134,62 @@ Json to_document(const TrainedModel& model, const std::vector<Predicted>& all) {
   return document;
 }
 
+/// Says which batches start in a climate that the model was not trained in.
+void note_climates(const Campaign& campaign, const TrainedModel& model, const Console& console) {
+  if (std::none_of(model.features.begin(), model.features.end(),
+                   [](const Feature& feature) { return feature.kind == FeatureKind::climate; }))
+    return;
+  for (const Batch& batch : campaign) {
+    const double climate = model_climate_degC(model, batch);
+    if (model.climate.beyond_K(climate) > 0)
+      console.note(batch.source + ": starts at " + fixed_text(climate, 1) + " degC, beyond the climates of training (" +
+                   fixed_text(model.climate.lowest, 1) + " to " + fixed_text(model.climate.highest, 1) +
+                   " degC), and counts as the nearest of them");
+  }
+}
+
+/// Corrects every prediction by the measured errors that --probe and --probe-every take, and says what they brought.
+void correct_by_probe(const TrainedModel& model, const Arguments& arguments, std::vector<Predicted>& all,
+                      const Console& console) {
+  const std::optional<Index> every = arguments.integer("--probe-every", 1, 1000000000);
+  const std::string column = arguments.value_or("--probe", "");
+  if (every && !column.empty()) throw UsageError("--probe and --probe-every both say when the probe is read");
+  if (!every && column.empty()) {
+    for (const char* option : {"--probe-limit", "--probe-age"})
+      if (arguments.has(option)) throw UsageError(std::string(option) + " goes with --probe or --probe-every");
+    return;
+  }
+  if (model.error_reference == ErrorReference::batch)
+    throw UsageError("a probe's readings count from the start of a batch, not from its mean: --error-reference start");
+  ProbeLimits<> limits;
+  limits.largest_um = arguments.number("--probe-limit", 0, 1e9).value_or(HUGE_VAL);
+  limits.longest_s = 60 * arguments.number("--probe-age", 0, 1e9).value_or(HUGE_VAL);
+  constexpr double outlier = 6;  // standard deviations of training; a second reading that agrees is none
+  const Vector jump_um = model.degrees_of_freedom > 0 ? Vector(outlier * model.residual_deviation_um)
+                                                      : Vector::Constant(model.model.errors(), HUGE_VAL);
+  Index taken = 0, refused = 0;
+  for (Predicted& one : all) {
+    const Batch& batch = *one.batch;
+    if (std::isfinite(limits.longest_s) && !batch.has_time())
+      throw Error(batch.source, "no clock, which --probe-age needs", "a time column");
+    std::vector<Index> rows;
+    for (Index row = 1; every && row < batch.rows(); ++row)
+      if (row % *every == 0) rows.push_back(row);
+    const Index input = column.empty() ? -1 : batch.inputs.find(column);
+    if (!column.empty() && input < 0)
+      throw Error(batch.source, "no column '" + column + "' of numbers", name_list(batch.inputs.names));
+    for (Index row = 0; input >= 0 && row < batch.rows(); ++row)
+      if (batch.inputs.values(row, input) > 0) rows.push_back(row);
+    ProbedPrediction probed = hold_readings(std::move(one.prediction), batch, rows, limits, jump_um);
+    one.prediction = std::move(probed.prediction);
+    taken += probed.taken, refused += probed.refused;
+  }
+  console.note("corrected by " + std::to_string(taken) + " readings of the probe, each held to the next" +
+               (refused > 0 ? "; " + std::to_string(refused) +
+                                  " were not taken: not measured, too large, or far off without a second that agrees"
+                            : ""));
+}
+
 Exit run_predict(const Arguments& arguments, Console& console) {
   const auto& words = arguments.positionals();
   if (words.size() < 2) throw UsageError("predict takes a model file and at least one batch");
@@ -143,13 +202,18 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   if (options.errors.empty()) options.errors = model.errors;
   options.errors_may_lack = options.inputs_may_lack = true;
   if (!options.inputs) options.inputs = std::vector<std::string>{};
+  if (arguments.has("--probe") && std::find(options.inputs->begin(), options.inputs->end(),
+                                            arguments.value_or("--probe", "")) == options.inputs->end())
+    options.inputs->push_back(arguments.value_or("--probe", ""));
   const Campaign campaign = read_files(options, console, {words.begin() + 1, words.end()}).batches;
   note_faults(campaign, console);
   note_first_rows(campaign, model.reference, console);
   note_starts(campaign, model.error_reference, false, console);
+  note_climates(campaign, model, console);
   std::vector<Predicted> all;
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
   if (model.error_reference == ErrorReference::recorded) note_zeros(model, all, console);
+  correct_by_probe(model, arguments, all, console);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.line(to_document(model, all).dump(1));
@@ -175,6 +239,10 @@ Command predict_command() {
   std::vector<Option> options = campaign_options();
   options.push_back(error_reference_option());
   append(options, {{"--summary", "", "one line a batch instead of every row", 0, false},
+                   {"--probe-every", "N", "correct by the measured error every N rows, held to the next", 0, false},
+                   {"--probe", "COLUMN", "the same in the rows where COLUMN is above 0", 0, false},
+                   {"--probe-limit", "UM", "a larger correction is not taken", 0, false},
+                   {"--probe-age", "MIN", "an older one no longer counts", 0, false},
                    {"--limit", "UM", "exit 1 when S of a batch is above", 0, false},
                    {"--json", "", "thermfit-prediction/1 instead of CSV", 0, false},
                    output_option("the result")});

@@ -6,6 +6,7 @@
 #include "options/error_reference.hpp"
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
+#include "options/transfer_options.hpp"
 #include "report/study_json.hpp"
 #include "report/study_text.hpp"
 #include "thermfit/io/json/campaign.hpp"
@@ -14,7 +15,12 @@ namespace thermfit::cli {
 namespace {
 
 const char* const details =
-    "The paper's whole comparison. In every batch the temperature points most correlated with the error are chosen and "
+    "Leads with what predicts best: every batch left out once and predicted by one model of all the others, by every "
+    "method and by transfer (see fit), which chooses without the batch; S_mean and S_std over batches, beside the "
+    "paper's.\n"
+    "\n"
+    "Then the paper's whole comparison. In every batch the temperature points most correlated with the error are "
+    "chosen and "
     "a model is fitted; every model predicts every other batch; S is the residual standard deviation of one model on "
     "one batch, S_mean and S_std its mean and spread over batches. Prints the correlations and chosen points, the "
     "coefficients of every batch's model, the matrix of S, S_mean and S_std in both readings (per model: of each model "
@@ -27,7 +33,9 @@ const char* const details =
     "are shown beside.\n"
     "--json prints thermfit-study/1: \"batches\" (name, rows, correlations points x errors), \"methods\" (method, "
     "selection, \"chosen\" with batch_models, S_um models x batches, per_model, pooled, worst; \"sweep\" one entry a "
-    "number of points), \"left_out\" (method, components, mean_rmse_um, pooled_rmse_um, rmse_um by batch), "
+    "number of points), \"left_out\" (method, components, mean_rmse_um, pooled_rmse_um, S_mean_um, S_std_um, rmse_um "
+    "by batch; transfer "
+    "also what it chose for each), "
     "\"published\".\n"
     "Exit codes: 0 done; 1 S_mean or S_std exceeds the limit given; 2 could not be done.";
 
@@ -62,6 +70,20 @@ Exit judge(const StudyReport& report, const Arguments& arguments, Console& conso
   return exit;
 }
 
+/// The method transfer beside the paper's, where rises and three batches allow it.
+void study_transfer(const Campaign& campaign, const Arguments& arguments, StudyReport& report) {
+  if (report.reference == TemperatureReference::absolute)
+    return void(report.transfer_refusal = "transfer is of rises, not of absolute temperatures");
+  const TransferPlan plan = transfer_plan(arguments, report.error_reference);
+  try {
+    const TransferData<> data = transfer_data(campaign, plan);
+    report.transfer = transfer_left_out(data.batches, static_cast<Index>(report.errors.size()), data.options);
+    report.transfer_lags_min = data.lags_min;
+  } catch (const Error& error) {
+    report.transfer_refusal = error.what();
+  }
+}
+
 Exit run_study(const Arguments& arguments, Console& console) {
   StudyReport report;
   report.reference = temperature_reference(arguments);
@@ -84,6 +106,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
   }
   find_card(campaign, report);
   report.study = study(observe(campaign, report.reference, report.error_reference), options);
+  study_transfer(campaign, arguments, report);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.print(study_json(report));
@@ -100,6 +123,7 @@ Command study_command() {
   options.push_back(absolute_option());
   options.push_back(error_reference_option());
   append(options, fit_option_table());
+  append(options, transfer_option_table());
   append(options, {{"--points", "K", "temperature points of every batch's model, or 'all' (default 2)", 0, false},
                    {"--most-points", "K", "the sweep stops there (default: all points)", 0, false},
                    {"--own-batch", "", "a model's own batch counts in S_mean and S_std", 0, false},

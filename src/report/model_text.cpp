@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "cli/table.hpp"
 #include "options/error_reference.hpp"
@@ -25,7 +26,7 @@ void print_points(const TrainedModel& m, Console& console) {
   if (latent) header.emplace_back("VIP");
   Table table(header);
   for (Index i = 0; i < m.model.sensors(); ++i) {
-    std::vector<std::string> row{m.temperatures[static_cast<std::size_t>(i)]};
+    std::vector<std::string> row{m.input_name(i)};
     for (Index j = 0; j < m.model.errors(); ++j) row.push_back(fixed_text(m.model.coefficients(i, j), 3));
     for (Index j = 0; j < m.model.errors(); ++j) row.push_back(fixed_text(m.standardised_coefficients(i, j), 3));
     row.push_back(fixed_text(m.temperature_mean(i), 2));
@@ -36,6 +37,30 @@ void print_points(const TrainedModel& m, Console& console) {
     table.add(row);
   }
   console.print(table.text(2));
+}
+
+/// What the method transfer chose, and the climates it knows.
+void print_blocks(const TrainedModel& m, Console& console) {
+  if (m.blocks.empty()) return;
+  const auto penalty = [](const char* block, double value) {
+    return std::string(block) + (std::isfinite(value) ? " " + general_text(value, 3) : " none");
+  };
+  bool climate = false;
+  for (std::size_t e = 0; e < m.blocks.size(); ++e) {
+    const TransferRecord& r = m.blocks[e];
+    climate = climate || std::isfinite(r.climate_penalty);
+    console.print(
+        wrap("  " + m.errors[e] + ": penalties chosen by leaving batches out: " + penalty("rise", r.rise_penalty) +
+                 ", " + penalty("lag", r.lag_penalty) + (r.lag_min > 0 ? " (" + exact_text(r.lag_min) + " min)" : "") +
+                 ", " + penalty("climate", r.climate_penalty),
+             80, 4));
+  }
+  if (climate)
+    console.print(wrap("  climate: mean of the points where a batch starts, " + fixed_text(m.climate.lowest, 1) +
+                           " to " + fixed_text(m.climate.highest, 1) + " degC in training and clipped to that, less " +
+                           fixed_text(m.climate.mean, 2) + " degC",
+                       80, 4));
+  console.line();
 }
 
 void print_components(const TrainedModel& m, Console& console) {
@@ -66,8 +91,10 @@ void print_substitutes(const TrainedModel& m, Console& console) {
 }
 
 /// What a model's intercept means where it is no probe's zero.
-const char* intercept_in_words(ErrorReference reference) {
-  return reference == ErrorReference::batch
+const char* intercept_in_words(const TrainedModel& m) {
+  if (m.error_reference == ErrorReference::start && m.method == "transfer")
+    return "The errors are 0 at rise 0, and so is the model.";
+  return m.error_reference == ErrorReference::batch
              ? "The intercept is each batch's own: predictions are changes, 0 at rise 0, as the machine's corrections "
                "are since its datum."
              : "The errors are 0 at rise 0; the intercept is what the fit leaves there, and drops out at a datum, from "
@@ -82,7 +109,7 @@ std::string reference_in_words(TemperatureReference reference) {
 }
 
 std::string model_title(const TrainedModel& m) {
-  std::string text = upper(m.method);
+  std::string text = m.method == "transfer" ? "Transfer" : upper(m.method);
   if (m.components > 0)
     text += ", " + std::to_string(m.components) + " latent variable" + (m.components > 1 ? "s" : "");
   if (m.method == "ridge") text += ", lambda " + general_text(m.ridge_lambda, 4);
@@ -98,7 +125,7 @@ std::string model_equation(const TrainedModel& m, Index error) {
                      (own ? "own intercept" : fixed_text(m.model.intercept(error), 3));
   for (Index i = 0; i < m.model.sensors(); ++i) {
     const double c = m.model.coefficients(i, error);
-    text += (c < 0 ? " - " : " + ") + fixed_text(c < 0 ? -c : c, 3) + ' ' + m.temperatures[static_cast<std::size_t>(i)];
+    text += (c < 0 ? " - " : " + ") + fixed_text(c < 0 ? -c : c, 3) + ' ' + m.input_name(i);
   }
   return text;
 }
@@ -110,8 +137,9 @@ void print_model(const TrainedModel& m, Console& console) {
   console.print(wrap(
       "  errors in um" + (recorded ? "" : ", " + in_words(m.error_reference)) + "; " + reference_in_words(m.reference),
       80, 2));
-  if (!recorded) console.print(wrap(std::string("  ") + intercept_in_words(m.error_reference), 80, 2));
+  if (!recorded) console.print(wrap(std::string("  ") + intercept_in_words(m), 80, 2));
   console.line();
+  print_blocks(m, console);
   print_points(m, console);
   print_components(m, console);
 

@@ -1,5 +1,7 @@
 #include "report/study_json.hpp"
 
+#include <cmath>
+
 #include "options/field_flags.hpp"
 #include "thermfit/io/json/node.hpp"
 #include "thermfit/version.hpp"
@@ -61,7 +63,41 @@ Json left_out_json(const StudyReport& r, const LeftOutMethod<>& row) {
     for (std::size_t b = 0; b < r.batches.size(); ++b) rmse[r.batches[b]] = row.result->residuals[b][e].rmse();
     errors[r.errors[e]] = {{"mean_rmse_um", row.result->mean(e, &Residuals<>::rmse)},
                            {"pooled_rmse_um", row.result->pooled(e).rmse()},
+                           {"S_mean_um", figure_of(row.result->residuals, e).S_mean},
+                           {"S_std_um", figure_of(row.result->residuals, e).S_std},
                            {"rmse_um", std::move(rmse)}};
+  }
+  result["errors"] = std::move(errors);
+  return result;
+}
+
+Json transfer_json(const StudyReport& r) {
+  Json result{{"method", "transfer"}, {"components", 0}};
+  if (!r.transfer) {
+    result["refusal"] = with_flags(r.transfer_refusal);
+    return result;
+  }
+  Json errors = Json::object();
+  for (std::size_t e = 0; e < r.errors.size(); ++e) {
+    Json rmse = Json::object(), chosen = Json::object();
+    Residuals<> pooled;
+    double mean = 0;
+    const auto known = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+    for (std::size_t b = 0; b < r.batches.size(); ++b) {
+      const Residuals<>& left = r.transfer->residuals[b][e];
+      rmse[r.batches[b]] = left.rmse();
+      mean += left.rmse() / static_cast<double>(r.batches.size());
+      pooled.add(left);
+      const TransferPenalties<>& p = r.transfer->fits[b][e].penalties;
+      chosen[r.batches[b]] = {{"rise_penalty", known(p.rise)},
+                              {"lag_penalty", known(p.lag)},
+                              {"climate_penalty", known(p.climate)},
+                              {"lag_min", std::isfinite(p.lag) ? Json(r.transfer_lags_min[p.lag_index]) : Json()}};
+    }
+    const MeanAndStd<> figure = r.transfer->figure(e);
+    errors[r.errors[e]] = {{"mean_rmse_um", mean},       {"pooled_rmse_um", pooled.rmse()},
+                           {"S_mean_um", figure.S_mean}, {"S_std_um", figure.S_std},
+                           {"rmse_um", std::move(rmse)}, {"chosen", std::move(chosen)}};
   }
   result["errors"] = std::move(errors);
   return result;
@@ -95,6 +131,7 @@ std::string study_json(const StudyReport& r) {
   }
   document["left_out"] = Json::array();
   for (const LeftOutMethod<>& row : r.study.left_out) document["left_out"].push_back(left_out_json(r, row));
+  document["left_out"].push_back(transfer_json(r));
   if (r.card && !r.card->published.empty()) {
     document["published"] = {{"source", r.card->published_source}, {"figures", Json::array()}};
     for (const PublishedFigure& f : r.card->published)

@@ -1,11 +1,13 @@
 #include "report/study_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/table.hpp"
 #include "options/error_reference.hpp"
 #include "options/field_flags.hpp"
 #include "report/model_text.hpp"
+#include "report/transfer_text.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -34,6 +36,7 @@ class ErrorSection {
       : r_(report), e_(error), error_(report.errors[error]), console_(console) {}
 
   void print() const {
+    advice();
     summary();
     correlations();
     const StudiedMethod<>& first = r_.study.methods.front();
@@ -89,6 +92,59 @@ class ErrorSection {
       }
     console_.line();
     console_.print(wrap(text + ".", 80, 0));
+  }
+
+  /// A way to predict batches that were not used: its name, the command that fits it, its figures.
+  struct Candidate {
+    std::string title, command;
+    MeanAndStd<> figure;
+    double worst_S;
+    std::size_t worst_batch;
+  };
+
+  static Candidate candidate(std::string title, std::string command, const std::vector<std::vector<Residuals<>>>& left,
+                             std::size_t error) {
+    Candidate result{std::move(title), std::move(command), figure_of(left, error), 0, 0};
+    for (std::size_t b = 0; b < left.size(); ++b)
+      if (left[b][error].S() > result.worst_S) result.worst_S = left[b][error].S(), result.worst_batch = b;
+    return result;
+  }
+
+  std::vector<Candidate> candidates() const {
+    std::vector<Candidate> all;
+    if (r_.transfer) all.push_back(candidate("transfer", "--method transfer", r_.transfer->residuals, e_));
+    for (const LeftOutMethod<>& row : r_.study.left_out) {
+      if (!row.result) continue;
+      const std::string components = row.components > 0 ? " --components " + std::to_string(row.components) : "";
+      all.push_back(candidate(title(row), std::string("--method ") + name(row.method) + components + " --points all",
+                              row.result->residuals, e_));
+    }
+    const auto unknown = [](const Candidate& one) { return !std::isfinite(one.figure.S_mean); };  // batches of one row
+    all.erase(std::remove_if(all.begin(), all.end(), unknown), all.end());
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.figure.S_mean < b.figure.S_mean; });
+    return all;
+  }
+
+  /// What to take: the way that predicts batches best that it was not made from.
+  void advice() const {
+    const std::vector<Candidate> all = candidates();
+    if (all.empty()) return;
+    const Candidate& best = all.front();
+    std::string text = "Each batch predicted by one model of all the others: " + best.title + " is best for " + error_ +
+                       ", " + in_words(best.figure) + ", at worst " + fixed_text(best.worst_S, 2) + " um on " +
+                       r_.batches[best.worst_batch];
+    if (all.size() > 1) text += "; next " + all[1].title + ", " + in_words(all[1].figure);
+    if (const Robustness<>* paper = figures(r_.study.methods.front()))
+      text += ". The paper's way, one batch a model: " + in_words(paper->per_model) +
+              " (pooled over all pairs: S_std " + fixed_text(paper->pooled.S_std, 2) + " um)";
+    console_.line();
+    console_.print(wrap(text + ".", 80, 0));
+    const bool start = r_.error_reference != ErrorReference::recorded;
+    console_.print(wrap("To take it: thermfit fit … " + best.command +
+                            (start ? std::string(" --error-reference ") + name(r_.error_reference) : "") +
+                            " -o model.json",
+                        80, 2));
   }
 
   void correlations() const {
@@ -239,26 +295,60 @@ class ErrorSection {
     if (quoted) console_.print(wrap("Published: " + r_.card->published_source + ".", 80, 2));
   }
 
+  static std::string title(const LeftOutMethod<>& row) {
+    std::string text = upper_name(row.method);
+    if (row.components > 0)
+      text += ", " + std::to_string(row.components) + (row.components > 1 ? " components" : " component");
+    return text;
+  }
+
+  /// The row of the method transfer, and what it chose.
+  std::string add_transfer(Table& table) const {
+    if (!r_.transfer) {
+      table.add({"transfer", "-"});
+      return "-  transfer: " + with_flags(r_.transfer_refusal);
+    }
+    LeftOut<> left;
+    left.residuals = r_.transfer->residuals;
+    const std::size_t worst = left.worst(e_, &Residuals<>::rmse);
+    table.add({"transfer", fixed_text(left.mean(e_, &Residuals<>::rmse), 2),
+               fixed_text(left.residuals[worst][e_].rmse(), 2), r_.batches[worst],
+               fixed_text(left.pooled(e_).rmse(), 2), fixed_text(left.mean(e_, &Residuals<>::rmse_without_bias), 2)});
+    std::vector<std::pair<std::string, std::size_t>> chosen;
+    for (const auto& fits : r_.transfer->fits) {
+      const std::string words = in_words(fits[e_].penalties, r_.transfer_lags_min);
+      const auto same = std::find_if(chosen.begin(), chosen.end(), [&](const auto& one) { return one.first == words; });
+      if (same == chosen.end())
+        chosen.emplace_back(words, 1);
+      else
+        ++same->second;
+    }
+    std::string text = "transfer chose without the batch:";
+    for (std::size_t c = 0; c < chosen.size(); ++c)
+      text += (c ? "; " : " ") + chosen[c].first + " (" + std::to_string(chosen[c].second) + " of " +
+              std::to_string(r_.batches.size()) + ")";
+    return text;
+  }
+
   void left_out() const {
     heading("Each batch left out and predicted by one model of all the others, all " + std::to_string(r_.study.points) +
             " points: RMSE over batches, um");
     Table table({"method", "mean", "worst", "batch", "pooled", "bias off"});
     for (const LeftOutMethod<>& row : r_.study.left_out) {
-      std::string title = upper_name(row.method);
-      if (row.components > 0)
-        title += ", " + std::to_string(row.components) + (row.components > 1 ? " components" : " component");
       if (!row.result) {
-        table.add({title, "-"});
-        console_.print(wrap("-  " + title + ": " + with_flags(row.refusal), 80, 3));
+        table.add({title(row), "-"});
+        console_.print(wrap("-  " + title(row) + ": " + with_flags(row.refusal), 80, 3));
         continue;
       }
       const std::size_t worst = row.result->worst(e_, &Residuals<>::rmse);
-      table.add({title, fixed_text(row.result->mean(e_, &Residuals<>::rmse), 2),
+      table.add({title(row), fixed_text(row.result->mean(e_, &Residuals<>::rmse), 2),
                  fixed_text(row.result->residuals[worst][e_].rmse(), 2), r_.batches[worst],
                  fixed_text(row.result->pooled(e_).rmse(), 2),
                  fixed_text(row.result->mean(e_, &Residuals<>::rmse_without_bias), 2)});
     }
+    const std::string chosen = add_transfer(table);
     console_.print(table.text());
+    console_.print(wrap(chosen, 80, 2));
   }
 
   const StudyReport& r_;

@@ -12,12 +12,16 @@
 #include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/robustness/study.hpp"
+#include "thermfit/robustness/transfer_left_out.hpp"
 
 namespace thermfit::cli {
 
 /// A study together with what its tables name.
 struct StudyReport {
   Study<> study;
+  std::optional<TransferLeftOut<>> transfer;  ///< every batch predicted by the method transfer from the others
+  std::vector<double> transfer_lags_min;      ///< it chose from
+  std::string transfer_refusal;               ///< why there is none
   TemperatureReference reference = TemperatureReference::rise;
   ErrorReference error_reference = ErrorReference::recorded;
   std::vector<std::string> temperatures, errors, batches;

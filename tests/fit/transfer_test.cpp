@@ -5,6 +5,7 @@
 
 #include "support/catch.hpp"
 #include "support/transfer_campaign.hpp"
+#include "thermfit/features/climate_range.hpp"
 
 using namespace thermfit;
 
@@ -123,6 +124,9 @@ TEST_CASE("a climate beyond training counts as its end", "[fit]") {
   CHECK(range.factor(-10) == -11);
   CHECK(range.factor(20) == 4);
   CHECK(range.factor(40) == 9);
+  CHECK(range.beyond_K(40) == 15);
+  CHECK(range.beyond_K(20) == 0);
+  CHECK(range.beyond_K(0) == 5);
 }
 
 TEST_CASE("two errors are chosen for each by itself, one batch is refused", "[fit]") {

@@ -72,6 +72,7 @@ ControllerModel<Scalar, Sensors, Errors, Components> narrow_model(const TrainedM
                                                                   DomainLimit limit = DomainLimit::percent_99) {
   using Model = ControllerModel<Scalar, Sensors, Errors, Components>;
   Model model;
+  require_plain(trained, "narrow_model");
   const Index sensors = trained.model.sensors();
   if (sensors < 1 || sensors > 254)
     throw Error("controller model", std::to_string(sensors) + " sensors", "1 to 254", "choose fewer points");

@@ -5,8 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/batch/climate.hpp"
+#include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/features/lag.hpp"
+#include "thermfit/lazy.hpp"
 #include "thermfit/moments/moments.hpp"
 
 namespace thermfit {
@@ -51,24 +54,29 @@ inline std::vector<double> visible_lags_min(const Campaign& campaign) {
   return lags;
 }
 
-/// A batch through the temperature columns `points`, its errors as they are. Values that are not finite: Error. One
+/// A batch through the temperature columns `points`, errors as `reference` counts them (referenced()); with
+/// ErrorReference::batch all columns are taken about their means, so that the batch has an intercept of its own. Rows
+/// without a reading of every error are seen by the lags, not by the products. Values that are not finite: Error. One
 /// pass a lag; allocates.
 template <typename Scalar = double>
 TransferBatch<Scalar> transfer_batch(const Batch& batch, const std::vector<Index>& points,
-                                     const std::vector<double>& lags_min) {
+                                     const std::vector<double>& lags_min,
+                                     ErrorReference reference = ErrorReference::recorded) {
   TransferBatch<Scalar> result;
-  const MatrixX<Scalar> rises = model_temperatures<Scalar>(batch, TemperatureReference::rise)(Eigen::all, points);
-  const MatrixX<Scalar> errors = detail::lazy<Scalar>(batch.errors.values).template cast<Scalar>();
+  const Batch counted = referenced<Lazy<double, Scalar>>(batch, reference);
+  const MatrixX<Scalar> rises = model_temperatures<Scalar>(counted, TemperatureReference::rise)(Eigen::all, points);
+  std::vector<Index> measured;
+  for (Index row = 0; row < counted.rows(); ++row)
+    if (detail::lazy<Scalar>(counted.errors.values).row(row).allFinite()) measured.push_back(row);
+  const MatrixX<Scalar> errors =
+      detail::lazy<Scalar>(counted.errors.values)(measured, Eigen::all).template cast<Scalar>();
   const Index p = rises.cols(), q = errors.cols();
-  result.rows = batch.rows();
+  result.rows = errors.rows();
   result.points = p;
   result.has_lag = !lags_min.empty();
-  if (batch.rows() > 0) {
-    const MatrixX<Scalar> start = batch.temperatures.values.row(0).template cast<Scalar>();
-    result.climate_degC = start(0, points).mean();
-  }
+  result.climate_degC = static_cast<Scalar>(climate_degC(counted, points));
   const auto add = [&](const MatrixX<Scalar>& columns) {
-    const Moments<Scalar> moments(columns, errors);
+    const Moments<Scalar> moments(MatrixX<Scalar>(columns(measured, Eigen::all)), errors);
     const Index c = columns.cols();
     MatrixX<Scalar> products = MatrixX<Scalar>::Zero(c + 1 + q, c + 1 + q);
     const Scalar rows = static_cast<Scalar>(std::max<Index>(1, moments.rows()));
@@ -78,7 +86,7 @@ TransferBatch<Scalar> transfer_batch(const Batch& batch, const std::vector<Index
     products.bottomRightCorner(q, q) = moments.error_products() / rows;
     VectorX<Scalar> mean(c + 1 + q);
     mean << moments.temperature_mean(), Scalar(1), moments.error_mean();
-    products += mean * mean.transpose();
+    if (reference != ErrorReference::batch) products += mean * mean.transpose();
     result.products.push_back(std::move(products));
   };
   if (lags_min.empty()) add(rises);

@@ -21,7 +21,8 @@ struct TransferOptions {
   std::optional<double> climate_penalty;  ///< of the rises times the climate; infinite: none of them
   std::optional<PenaltyScale> scale;      ///< what coefficients are measured in
   double least_climate_range_K = 1;       ///< batches whose starts differ by less tell nothing of the climate
-  std::size_t most_groups = 12;           ///< batches are left out one by one, or, if there are more, in so many groups
+  std::size_t most_groups =
+      12;  ///< batches are left out one by one, or, if there are more, in so many groups, 2 at least
 };
 
 /// Penalties that are tried: 1e-4 to 10 in half decades, then infinity, at which a block is gone. A sensor reads to
@@ -89,7 +90,7 @@ class TransferChoice {
       const MatrixX<Scalar>&x = a->products.front(), &y = b->products.front();
       return std::lexicographical_compare(x.data(), x.data() + x.size(), y.data(), y.data() + y.size());
     });
-    const std::size_t groups = std::min(options_.most_groups, batches_.size());
+    const std::size_t groups = std::min(std::max<std::size_t>(2, options_.most_groups), batches_.size());
     for (std::size_t g = 0; g < groups; ++g) {
       Group group;
       Batches others;

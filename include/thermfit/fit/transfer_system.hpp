@@ -5,22 +5,12 @@
 #include <limits>
 #include <vector>
 
+#include "thermfit/features/climate_range.hpp"
 #include "thermfit/fit/block_ridge.hpp"
 #include "thermfit/fit/residuals.hpp"
 #include "thermfit/fit/transfer_batch.hpp"
 
 namespace thermfit {
-
-/// The range of climates a model was trained in, degC.
-template <typename Scalar = double>
-struct ClimateRange {
-  Scalar lowest = 0;   ///< mean temperature at the start of the coldest batch
-  Scalar highest = 0;  ///< of the warmest
-  Scalar mean = 0;     ///< over batches
-
-  /// What rises are multiplied by in a batch that starts at `climate_degC`: clipped to the range, less the mean, K.
-  Scalar factor(Scalar climate_degC) const { return std::clamp(climate_degC, lowest, highest) - mean; }
-};
 
 /// Range over some batches. Zero of none.
 template <typename Scalar>
@@ -112,6 +102,8 @@ class TransferSystem {
 
  private:
   void add(const TransferBatch<Scalar>& batch, std::size_t lag, Scalar sign) {
+    if (batch.rows == 0 && plain_.size() > 0) return;
+    if (batch.rows == 0) sign = 0;
     const MatrixX<Scalar>& products = batch.products[lag];
     points_ = batch.points;
     one_ = batch.columns() - 1;

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "thermfit/batch/climate.hpp"
 #include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
+#include "thermfit/features/feature_columns.hpp"
 #include "thermfit/model/outside_domain.hpp"
 #include "thermfit/model/trained_model.hpp"
 
@@ -28,27 +30,56 @@ struct BatchPrediction {
   }
 };
 
-/// Temperatures of `batch` as `model` wants them: its points, in its order, as rise or absolute; rows x points. Throws
-/// Error on a point the batch lacks, naming those there are, and on a rise without a first reading, unless errors have
-/// another reference than recorded: then rises count from the first row that is there. Allocates the result.
+namespace detail {
+
+/// The batch as rises of `model` count in it: from its first row, or, where that was left out and errors do so too,
+/// from the first that is there.
+inline Batch as_counted(const TrainedModel& model, const Batch& batch) {
+  const bool later = !lacks_first_reading(batch).empty() && model.error_reference != ErrorReference::recorded;
+  return later ? from_first_row_there(batch) : batch;
+}
+
+/// Columns of the model's points. Throws Error on one that the batch lacks, naming those there are.
+inline std::vector<Index> columns_of(const TrainedModel& model, const Batch& batch) {
+  std::vector<Index> columns;
+  for (const std::string& point : model.temperatures) {
+    columns.push_back(batch.temperatures.find(point));
+    if (columns.back() >= 0) continue;
+    std::string there;
+    for (const std::string& name : batch.temperatures.names) there += (there.empty() ? "" : ", ") + name;
+    throw Error(batch.source.empty() ? batch.name : batch.source,
+                "no temperature point '" + point + "', which the model needs", there);
+  }
+  return columns;
+}
+
+}  // namespace detail
+
+/// The climate of `batch` for a model with features, degC. Throws Error on a point the batch lacks.
+inline double model_climate_degC(const TrainedModel& model, const Batch& batch) {
+  return climate_degC(detail::as_counted(model, batch), detail::columns_of(model, batch));
+}
+
+/// Temperatures of `batch` as `model` wants them: its points, in its order, as rise or absolute, or its features; rows
+/// x inputs. Throws Error on a point the batch lacks, naming those there are, and on a rise without a first reading,
+/// unless errors have another reference than recorded: then rises count from the first row that is there. Allocates the
+/// result.
 template <typename Scalar = double>
 MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
   if (model.reference == TemperatureReference::rise && model.error_reference == ErrorReference::recorded)
     require_first_readings(batch, model.temperatures);
-  const bool later = !lacks_first_reading(batch).empty() && model.error_reference != ErrorReference::recorded;
-  const MatrixX<Scalar> all = model_temperatures<Scalar>(later ? from_first_row_there(batch) : batch, model.reference);
-  MatrixX<Scalar> chosen(all.rows(), static_cast<Index>(model.temperatures.size()));
-  for (std::size_t i = 0; i < model.temperatures.size(); ++i) {
-    const Index column = batch.temperatures.find(model.temperatures[i]);
-    if (column < 0) {
-      std::string there;
-      for (const std::string& name : batch.temperatures.names) there += (there.empty() ? "" : ", ") + name;
-      throw Error(batch.source.empty() ? batch.name : batch.source,
-                  "no temperature point '" + model.temperatures[i] + "', which the model needs", there);
-    }
-    chosen.col(static_cast<Index>(i)) = all.col(column);
-  }
-  return chosen;
+  const Batch counted = detail::as_counted(model, batch);
+  const MatrixX<Scalar> chosen =
+      model_temperatures<Scalar>(counted, model.reference)(Eigen::all, detail::columns_of(model, batch));
+  if (model.features.empty()) return chosen;
+  for (const Feature& feature : model.features)
+    if (feature.kind == FeatureKind::lag && !batch.has_time())
+      throw Error(batch.source.empty() ? batch.name : batch.source, "no clock, which the lags of the model need",
+                  "time_s, time_min, time_h, Time, or a column of ISO 8601 date-times",
+                  "name it (CsvOptions::time_column, CsvOptions::time_unit)");
+  return feature_columns(model.features, chosen,
+                         VectorX<Scalar>(detail::lazy<Scalar>(batch.time_s).template cast<Scalar>()),
+                         static_cast<Scalar>(model.climate.factor(model_climate_degC(model, batch))));
 }
 
 namespace detail {

@@ -5,6 +5,9 @@
 
 #include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/error.hpp"
+#include "thermfit/features/climate_range.hpp"
+#include "thermfit/features/feature.hpp"
 #include "thermfit/model/latent_variables.hpp"
 #include "thermfit/model/linear_model.hpp"
 #include "thermfit/model/sensor_envelope.hpp"
@@ -28,9 +31,17 @@ struct SubstituteModel {
                         ///< (4 standard deviations on the training rows, and the sensor's scatter); empty: unknown
 };
 
+/// How the method transfer penalised the blocks of one error. Infinite: the block is not there.
+struct TransferRecord {
+  double rise_penalty = 0;     ///< of the rises
+  double lag_penalty = 0;      ///< of the lagged rises
+  double climate_penalty = 0;  ///< of the rises times the climate
+  double lag_min = 0;          ///< time constant; 0 without lag
+};
+
 /// A linear model with everything a predictor needs and where it came from: the in-memory `thermfit-model/1`.
 struct TrainedModel {
-  std::string method;                     ///< "pls", "mlr", "pcr", "ridge"
+  std::string method;                     ///< "pls", "mlr", "pcr", "ridge", "transfer"
   std::string selection;                  ///< how the points were chosen: "correlation", "fcgr", "given", "all"
   Index components = 0;                   ///< latent variables used; 0 for MLR and ridge
   double ridge_lambda = 0;                ///< penalty; 0 for the others
@@ -44,7 +55,11 @@ struct TrainedModel {
   /// intercept of its own, so that the model has none: it gives changes, 0 at rise 0.
   ErrorReference error_reference = ErrorReference::recorded;
 
-  LinearModel<> model;                       ///< raw units: um, um/K
+  std::vector<Feature> features;       ///< what the coefficients are of; empty: of the rises (temperatures) themselves
+  ClimateRange<> climate;              ///< of training, where features need it
+  std::vector<TransferRecord> blocks;  ///< of the method transfer, per error; empty for the others
+
+  LinearModel<> model;                       ///< raw units: um, um/K; of the features where there are any, else points
   Matrix standardised_coefficients;          ///< sensors x errors
   Vector temperature_mean;                   ///< per sensor, K of rise or degC
   Vector temperature_scale;                  ///< per sensor, K
@@ -60,6 +75,21 @@ struct TrainedModel {
   std::vector<SubstituteModel> substitutes;  ///< one per sensor, or none
   std::vector<TrainingBatch> batches;        ///< it was trained on
   std::string tool_version;                  ///< of the library that trained it
+
+  /// How many numbers the coefficients multiply: features, or points where there are none.
+  Index inputs() const { return static_cast<Index>(features.empty() ? temperatures.size() : features.size()); }
+  /// What coefficient `i` multiplies, by name. Allocates the text.
+  std::string input_name(Index i) const {
+    const auto position = static_cast<std::size_t>(i);
+    return features.empty() ? temperatures[position] : thermfit::name(features[position], temperatures);
+  }
 };
+
+/// Refuses, in `place`, a model whose features that place cannot compute yet: throws Error.
+inline void require_plain(const TrainedModel& model, const std::string& place) {
+  if (!model.features.empty())
+    throw Error(place, "a model of the method " + model.method + ", whose coefficients are of derived channels",
+                "pls, mlr, pcr, ridge", "predict takes it; here fit a model by another method");
+}
 
 }  // namespace thermfit

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "thermfit/error.hpp"
+#include "thermfit/fit/residuals.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
@@ -23,6 +24,14 @@ struct MeanAndStd {
     return {mean, std::sqrt((v - mean).square().mean())};
   }
 };
+
+/// S_mean and S_std of error `error` over batches, from what a model left in each (per batch, per error). Allocates.
+template <typename Scalar>
+MeanAndStd<Scalar> figure_of(const std::vector<std::vector<Residuals<Scalar>>>& left, std::size_t error) {
+  std::vector<Scalar> S;
+  for (const auto& batch : left) S.push_back(batch[error].S());
+  return MeanAndStd<Scalar>::of(S);
+}
 
 /// A matrix of S (row: the batch a model was made from; column: the batch it predicts), summarised.
 template <typename Scalar = double>

@@ -18,11 +18,7 @@ struct TransferLeftOut {
   std::vector<std::vector<Residuals<Scalar>>> residuals;  ///< per batch, per error: on it
 
   /// S_mean and S_std of one error over the batches, um.
-  MeanAndStd<Scalar> figure(std::size_t error) const {
-    std::vector<Scalar> S;
-    for (const auto& batch : residuals) S.push_back(batch[error].S());
-    return MeanAndStd<Scalar>::of(S);
-  }
+  MeanAndStd<Scalar> figure(std::size_t error) const { return figure_of(residuals, error); }
 };
 
 /// Leaves every batch out once. A batch takes no part in the choice of what predicts it. On `threads` threads (0: all

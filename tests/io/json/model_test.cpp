@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "support/catch.hpp"
+#include "support/transfer_campaign.hpp"
+#include "thermfit/fit/train_transfer.hpp"
 
 using namespace thermfit;
 
@@ -72,6 +74,33 @@ TEST_CASE("a model saved and loaded is the same to the last bit", "[io]") {
   CHECK(loaded.temperatures == std::vector<std::string>{"T5", "T1"});
   CHECK(loaded.envelope.largest_rate_K_per_min(1) == .4);
   CHECK(loaded.substitutes.at(0).model.coefficients(1, 0) == 3.6);
+}
+
+TEST_CASE("a model on features saved and loaded is the same to the last bit", "[io]") {
+  TransferPlan plan;
+  plan.error_reference = ErrorReference::start;
+  const TrainedModel model = train_transfer(TransferMachine{20, .1, .3, 4}.campaign(6, 90), plan);
+  const Json document = model_to_json(model);
+  const TrainedModel loaded = model_from_json(document, "m.json");
+  CHECK(model_to_json(loaded) == document);
+  CHECK(loaded.features.size() == model.features.size());
+  CHECK(loaded.features[5].kind == FeatureKind::lag);
+  CHECK(loaded.features[5].lag_min == model.features[5].lag_min);
+  CHECK(loaded.climate.highest == model.climate.highest);
+  CHECK(loaded.model.coefficients == model.model.coefficients);
+
+  Json other = document;
+  other["transfer"]["features"][5]["lag_min"] = 0;
+  CHECK(refusal(with_digest(other)).find("lag") != std::string::npos);
+  other = document;
+  other["transfer"]["features"][0]["point"] = 4;
+  CHECK(refusal(with_digest(other)).find("features[0].point") != std::string::npos);
+  other = document;
+  other["transfer"]["features"][0]["kind"] = "square";
+  CHECK(refusal(with_digest(other)).find("difference") != std::string::npos);
+  other = document;
+  other["transfer"]["climate_lowest_degC"] = 1000;
+  CHECK(refusal(with_digest(other)).find("climate_lowest_degC") != std::string::npos);
 }
 
 TEST_CASE("an edited number is found by the digest", "[io]") {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,13 +12,17 @@
 #include "thermfit/version.hpp"
 
 /// The model file `thermfit-model/1`: readable JSON with 17 digits, bounded counts and a digest over all of it.
+///
+/// A model of the method `transfer` has the key `transfer`: `features` (kind, point, and lag_min of a lag), of which
+/// `um_per_K` and the training domain have a row each, the climates of training, and `blocks`, an entry an error: its
+/// penalties, null where a block is not there, and its lag. The state of a lag starts at 0 where rises do.
 /// `reference` tells what temperatures count from (rise, absolute), `error_reference` what errors do (recorded, start,
 /// batch: TrainedModel::error_reference); files of earlier versions lack it, and their errors are as recorded.
 
 namespace thermfit {
 namespace detail {
 
-constexpr Index most_sensors = 2000, most_errors = 100;
+constexpr Index most_sensors = 2000, most_errors = 100, most_features = 10000;
 
 /// Puts the fields that `describe_model` names into a JSON object.
 template <typename J>
@@ -129,15 +134,43 @@ class ModelReader {
   std::vector<std::string> keys_;
 };
 
+/// What files have of models on derived channels only: `features` (what each coefficient is of), the climate of
+/// training, and what was chosen for each error.
+template <class Archive>
+void describe_features(Archive& io, TrainedModel& m, Index points, Index errors) {
+  io.optional("transfer", !m.features.empty(), [&](auto& inner) {
+    inner.list("features", m.features, most_features, [&](auto& item, Feature& f) {
+      std::vector<std::string> kinds{"rise", "lag", "climate", "difference"};
+      std::string kind = kinds[static_cast<std::size_t>(f.kind)];
+      item.choice("kind", kind, kinds);
+      f.kind = static_cast<FeatureKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+      item.integer("point", f.point, points - 1);
+      if (f.kind == FeatureKind::difference) item.integer("other", f.other, points - 1);
+      if (f.kind == FeatureKind::lag) item.number("lag_min", f.lag_min);
+    });
+    inner.number("climate_lowest_degC", m.climate.lowest);
+    inner.number("climate_highest_degC", m.climate.highest);
+    inner.number("climate_mean_degC", m.climate.mean);
+    inner.list("blocks", m.blocks, errors, [&](auto& item, TransferRecord& r) {
+      item.number("rise_penalty", r.rise_penalty);
+      item.number("lag_penalty", r.lag_penalty);
+      item.number("climate_penalty", r.climate_penalty);
+      item.number("lag_min", r.lag_min);
+    });
+  });
+}
+
 /// Every field of a model file once, for reading and for writing.
 template <class Archive>
 void describe_model(Archive& io, TrainedModel& m) {
   io.text("tool_version", m.tool_version);
-  io.choice("method", m.method, {"pls", "mlr", "pcr", "ridge"});
+  io.choice("method", m.method, {"pls", "mlr", "pcr", "ridge", "transfer"});
   io.text("selection", m.selection);
   io.texts("temperatures", m.temperatures, most_sensors);
   io.texts("errors", m.errors, most_errors);
-  const Index p = static_cast<Index>(m.temperatures.size()), q = static_cast<Index>(m.errors.size());
+  const Index points = static_cast<Index>(m.temperatures.size()), q = static_cast<Index>(m.errors.size());
+  describe_features(io, m, points, q);
+  const Index p = m.inputs();
   std::string reference = m.reference == TemperatureReference::rise ? "rise" : "absolute";
   io.choice("reference", reference, {"rise", "absolute"});
   m.reference = reference == "rise" ? TemperatureReference::rise : TemperatureReference::absolute;
@@ -190,7 +223,7 @@ void describe_model(Archive& io, TrainedModel& m) {
     SensorEnvelope& e = m.envelope;
     std::string known = e.has_rates() ? "range and rates" : e.has_range() ? "range" : "nothing";
     inner.choice("known", known, {"nothing", "range", "range and rates"});
-    const Index ranges = known == "nothing" ? 0 : p, rates = known == "range and rates" ? p : 0;
+    const Index ranges = known == "nothing" ? 0 : points, rates = known == "range and rates" ? points : 0;
     inner.vector("lowest_degC", e.lowest_degC, ranges);
     inner.vector("highest_degC", e.highest_degC, ranges);
     inner.vector("largest_rate_K_per_min", e.largest_rate_K_per_min, rates);
@@ -198,12 +231,12 @@ void describe_model(Archive& io, TrainedModel& m) {
   });
   io.optional("sensor_starts", m.envelope.has_starts(), [&](auto& inner) {
     SensorEnvelope& e = m.envelope;
-    inner.vector("first_lowest_degC", e.first_lowest_degC, p);
-    inner.vector("first_highest_degC", e.first_highest_degC, p);
-    inner.vector("scatter_K", e.scatter_K, p);
+    inner.vector("first_lowest_degC", e.first_lowest_degC, points);
+    inner.vector("first_highest_degC", e.first_highest_degC, points);
+    inner.vector("scatter_K", e.scatter_K, points);
   });
-  io.list("substitutes", m.substitutes, p, [&](auto& inner, SubstituteModel& s) {
-    inner.integer("lost", s.lost, p - 1);
+  io.list("substitutes", m.substitutes, points, [&](auto& inner, SubstituteModel& s) {
+    inner.integer("lost", s.lost, points - 1);
     inner.vector("intercept_um", s.model.intercept, q);
     inner.matrix("um_per_K", s.model.coefficients, p, q);
     inner.vector("residual_deviation_um", s.residual_deviation_um, q);
@@ -252,6 +285,10 @@ TrainedModel model_from_json(const J& document, const std::string& file) {
     for (Index i = 0; i < values.size(); ++i)
       if (values(i) <= 0) root.fail(std::string(name) + " holds a value that is not above 0");
   };
+  for (const Feature& feature : model.features)
+    if (feature.kind == FeatureKind::lag && !(feature.lag_min > 0 && std::isfinite(feature.lag_min)))
+      root.fail("transfer.features holds a lag that is not above 0");
+  if (!(model.climate.lowest <= model.climate.highest)) root.fail("transfer.climate_lowest_degC is above the highest");
   positive(model.temperature_scale, "temperature_scale");
   positive(model.error_scale, "error_scale_um");
   positive(model.domain.scale, "training_domain.scale");

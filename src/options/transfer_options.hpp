@@ -1,0 +1,20 @@
+#pragma once
+
+/// Options of the method `transfer`, and what there is to say about what it cannot have.
+
+#include "cli/arguments.hpp"
+#include "cli/console.hpp"
+#include "thermfit/fit/train_transfer.hpp"
+
+namespace thermfit::cli {
+
+/// --features, --lag.
+std::vector<Option> transfer_option_table();
+
+/// What the options say, for errors counted as `reference`. Throws UsageError on a value that is not allowed.
+TransferPlan transfer_plan(const Arguments& arguments, ErrorReference reference);
+
+/// Says which blocks of the method `transfer` these batches cannot have, and why.
+void note_lacking_blocks(const Campaign& campaign, const TransferPlan& plan, const Console& console);
+
+}  // namespace thermfit::cli
