@@ -71,10 +71,9 @@ Exit judge(const StudyReport& report, const Arguments& arguments, Console& conso
 }
 
 /// The method transfer beside the paper's, where rises and three batches allow it.
-void study_transfer(const Campaign& campaign, const Arguments& arguments, StudyReport& report) {
+void study_transfer(const Campaign& campaign, const TransferPlan& plan, StudyReport& report) {
   if (report.reference == TemperatureReference::absolute)
     return void(report.transfer_refusal = "transfer is of rises, not of absolute temperatures");
-  const TransferPlan plan = transfer_plan(arguments, report.error_reference);
   try {
     const TransferData<> data = transfer_data(campaign, plan);
     report.transfer = transfer_left_out(data.batches, static_cast<Index>(report.errors.size()), data.options);
@@ -88,6 +87,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
   StudyReport report;
   report.reference = temperature_reference(arguments);
   report.error_reference = error_reference(arguments);
+  const TransferPlan to_transfer = transfer_plan(arguments, report.error_reference);
   const Campaign campaign = learning_campaign(arguments, console, report.reference);
   note_starts(campaign, report.error_reference, true, console);
   require_errors(campaign);
@@ -106,7 +106,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
   }
   find_card(campaign, report);
   report.study = study(observe(campaign, report.reference, report.error_reference), options);
-  study_transfer(campaign, arguments, report);
+  study_transfer(campaign, to_transfer, report);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))
     console.print(study_json(report));
