@@ -125,3 +125,39 @@ TEST_CASE("what is worth knowing only leaves out nothing", "[findings]") {
   campaign[1].time_s.tail(39).array() += 40000;                                 // a gap
   CHECK(leave_out_of(campaign).nothing());
 }
+
+TEST_CASE("campaigns that tell nothing about each other are no trouble", "[findings]") {
+  CHECK(find_faults(Campaign{}).empty());
+  Campaign campaign = vcenter55();
+  SECTION("a batch without a number") {
+    campaign[3].temperatures.values.setConstant(std::nan(""));
+    campaign[3].errors.values.setConstant(std::nan(""));
+  }
+  SECTION("a batch without rows") {
+    campaign[3].temperatures.values.resize(0, 10);
+    campaign[3].errors.values.resize(0, 1);
+    campaign[3].time_s.resize(0);
+  }
+  SECTION("a batch of two rows") {
+    for (Matrix* values : {&campaign[3].temperatures.values, &campaign[3].errors.values})
+      values->conservativeResize(2, values->cols());
+    campaign[3].time_s.conservativeResize(2);
+  }
+  SECTION("another order of names") { std::swap(campaign[3].temperatures.names[0], campaign[3].temperatures.names[1]); }
+  SECTION("no errors") {
+    for (Batch& batch : campaign) batch.errors = {};
+  }
+  SECTION("two sensors") {
+    for (Batch& batch : campaign) {
+      batch.temperatures.names.resize(2);
+      batch.temperatures.values.conservativeResize(batch.rows(), 2);
+    }
+  }
+  SECTION("three batches") { campaign.resize(3); }
+  const CampaignFindings findings = find_faults(campaign);
+  for (std::size_t b = 0; b < campaign.size(); ++b) {
+    INFO(b);
+    if (b != 3) CHECK(findings[b].empty());
+  }
+  CHECK(without(campaign, leave_out(campaign, findings)).size() + 1 >= campaign.size());
+}

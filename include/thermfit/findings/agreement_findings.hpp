@@ -126,7 +126,9 @@ void add_agreement_findings(const Campaign& campaign, std::vector<std::vector<Fi
   for (std::size_t b = 0; b < campaign.size(); ++b)
     for (Index c = 0; c < channels; ++c) {
       const double missing = movement(static_cast<Index>(b), c);
-      if (missing <= still || std::find(known[b].begin(), known[b].end(), c) != known[b].end()) continue;
+      if (missing <= still || rows_that_count[b].size() <= static_cast<std::size_t>(channels) ||
+          std::find(known[b].begin(), known[b].end(), c) != known[b].end())
+        continue;
       known[b].push_back(c);
       findings[b].push_back({FindingRule::dead, campaign[b].temperatures.names[static_cast<std::size_t>(c)],
                              rows_that_count[b].front(), rows_that_count[b].back(), std::exp(missing), std::exp(still),
