@@ -21,9 +21,10 @@ const char* const details =
 With a machine file, the simulator is the lumped network that it describes: every effect of the catalogue is added at every place and refitted together with the calibration. --write saves the machine with the effect added; `thermfit simulate` then runs it.
 With --sim, the simulator is anybody's: only its output is read, one file a batch with the same names as the measured ones. Effects then act through the traces they leave in the outputs.
 
+First the two sides are compared: a column in another unit, with the other sign, exchanged or copied, and a clock that is off are data problems; where one is certain, it is told and no effect is looked for. Single cells that are no readings are left out and told.
 The report gives one sentence first, then what was ruled out and why, what could not be told apart, the next experiment, data problems, and tables.
 Verdicts: none (no gap), miscalibration (the simulator's own parameters close it), effect, ambiguous (several remain), unknown (real, but nothing in the catalogue closes it).
-Exit codes: 0 none, miscalibration or effect; 1 ambiguous or unknown; 2 could not be done.)";
+Exit codes: 0 none, miscalibration or effect; 1 ambiguous, unknown, or sides that are not written down alike; 2 could not be done.)";
 
 std::vector<Option> options() {
   std::vector<Option> all{
@@ -98,7 +99,10 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
   require_time(real);
   Diagnosis found = diagnose(machine, real, library, options);
   if (found.machine.empty()) found.machine = words[0];
-  if (output) save_machine(found.with_effects, *output);
+  if (output && found.unlike_sides)
+    console.note(*output + ": not written: the machine and the batches are not written down alike");
+  else if (output)
+    save_machine(found.with_effects, *output);
   return found;
 }
 

@@ -173,7 +173,10 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
                        {"prior_sds", figure(one.prior_sds)}, {"pinned", one.pinned}};
   });
   document["data_problems"] = array_of(diagnosis.data_problems, [](const DataProblem& one) {
-    return OrderedJson{{"place", place_of(one)}, {"what", what_of(one)}};
+    OrderedJson problem{{"place", place_of(one)}, {"what", what_of(one)}};
+    if (one.kind >= DataProblem::Kind::unit) problem["certain"] = one.certain;
+    if (const std::string remedy = remedy_of(one); !remedy.empty()) problem["remedy"] = remedy;
+    return problem;
   });
   document["weaker_claims"] = array_of(diagnosis.weaker_claims, claim_of);
   OrderedJson& judged_by = document["judged_by"] = OrderedJson::object();

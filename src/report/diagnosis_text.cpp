@@ -1,6 +1,7 @@
 #include "report/diagnosis_text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "cli/table.hpp"
@@ -92,7 +93,27 @@ std::string whereabouts(const Diagnosis& diagnosis) {
   return text;
 }
 
+/// What is certainly wrong between the sides, and what to do about it.
+std::string unlike_sentence(const Diagnosis& diagnosis) {
+  std::string text = "The two sides are not written down alike, so that no effect is looked for: ";
+  std::vector<std::string> what, remedies;
+  for (const DataProblem& one : diagnosis.data_problems) {
+    if (!one.certain) continue;
+    what.push_back(what_of(one));
+    const std::string remedy = remedy_of(one);
+    if (std::find(remedies.begin(), remedies.end(), remedy) == remedies.end()) remedies.push_back(remedy);
+  }
+  text += joined(what, "; ");
+  if (text.back() != '?') text += ".";
+  for (std::string& remedy : remedies) {
+    remedy[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
+    text += " " + remedy + ".";
+  }
+  return text;
+}
+
 std::string sentence(const Diagnosis& diagnosis) {
+  if (diagnosis.unlike_sides) return unlike_sentence(diagnosis);
   const Gap& gap = diagnosis.gap;
   const std::string unit = ' ' + gap.unit;
   switch (diagnosis.verdict) {
@@ -180,7 +201,11 @@ std::vector<std::string> next_experiment(const NextExperiment& next) {
 
 std::vector<std::string> data_problems(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
-  for (const DataProblem& one : diagnosis.data_problems) lines.push_back(place_of(one) + ": " + what_of(one));
+  for (const DataProblem& one : diagnosis.data_problems) {
+    const std::string remedy = remedy_of(one);
+    lines.push_back(place_of(one) + ": " + what_of(one) +
+                    (remedy.empty() ? "" : (what_of(one).back() == '?' ? " " : "; ") + remedy));
+  }
   return lines;
 }
 
@@ -281,8 +306,12 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
       if (one.standard_error != 0) parameters.push_back(parameter_text(one));  // a chosen scale is no finding
     if (!parameters.empty()) text += wrap(found.effect + ": " + joined(parameters) + ".", width, 0);
   }
-  text += remaining_text(diagnosis);
   Sections sections;
+  if (diagnosis.unlike_sides) {
+    sections.add("Data problems", data_problems(diagnosis));
+    return text + sections.text + (diagnosis.gap.per_sensor.empty() ? "" : '\n' + gap_table(diagnosis));
+  }
+  text += remaining_text(diagnosis);
   sections.add("Ruled out", ruled_out(diagnosis));
   sections.add("Not told apart by these data", not_told_apart(diagnosis));
   sections.add("Next experiment", next_experiment(diagnosis.next_experiment));

@@ -184,6 +184,81 @@ std::string remark_of(const NextExperiment& next) {
   return {};
 }
 
+namespace {
+
+std::string side_of(const DataProblem& problem) {
+  return problem.side == DataProblem::Side::simulated ? "simulated " : "measured ";
+}
+
+std::string other_side_of(const DataProblem& problem) {
+  return problem.side == DataProblem::Side::simulated ? "measured" : "simulated";
+}
+
+/// " in K03", or nothing where it is so in all batches.
+std::string where_in(const DataProblem& problem) {
+  return problem.batches.empty() ? "" : " (in " + joined(problem.batches) + ")";
+}
+
+std::string times_text(double factor) {
+  return factor < 100 ? general_text(factor, 2) : fixed_text(factor, 0);
+}
+
+/// Which unit of time was taken for which.
+std::string mistaken_clock(double factor) {
+  const double size = factor > 1 ? factor : 1 / factor;
+  const char* small = size > 9000 || std::abs(size - 1000) < 1 ? "milliseconds" : "seconds";
+  const char* large = size > 9000 || size < 100 ? "minutes" : size < 2000 ? "seconds" : "hours";
+  return std::string(factor > 1 ? small : large) + " read as " + (factor > 1 ? large : small);
+}
+
+/// What is different between the sides.
+std::string difference_of(const DataProblem& problem) {
+  using Kind = DataProblem::Kind;
+  const std::string names = joined(problem.names);
+  const bool many = problem.names.size() > 1;
+  switch (problem.kind) {
+    case Kind::unit: {
+      std::string text = side_of(problem) + names + (many ? " seem" : " seems") + " to be in " + problem.unit;
+      const double ratio = problem.side == DataProblem::Side::simulated ? problem.figure : 1 / problem.figure;
+      if (problem.figure > 0)
+        text += ": it moves " + times_text(ratio > 1 ? ratio : 1 / ratio) +
+                (ratio > 1 ? " times less" : " times more") + " than the " + other_side_of(problem) + " one";
+      else if (problem.unit == "K")
+        text += std::string(": ") + (many ? "they stand" : "it stands") + " 273.15 above what is " +
+                (problem.side == DataProblem::Side::simulated ? "measured" : "expected");
+      return text;
+    }
+    case Kind::factor:
+      return "measured " + names + " moves " + times_text(problem.figure > 1 ? problem.figure : 1 / problem.figure) +
+             (problem.figure > 1 ? " times more" : " times less") +
+             " than simulated, which is no unit: counts on one side?";
+    case Kind::sign:
+      return "measured " + names + " has the opposite sign of simulated " + names +
+             ": one is the error, the other the correction?";
+    case Kind::swapped:
+      return "the columns " + joined(problem.names, " and ") + " seem to be exchanged" +
+             (problem.side == DataProblem::Side::measured ? " in the batches" : " on one side");
+    case Kind::copied:
+      return side_of(problem) + problem.names[1] + " holds " + problem.names[0] + " once more, to the last digit";
+    case Kind::clock_unit:
+      return (problem.side == DataProblem::Side::simulated ? "the times of the simulator's output are "
+              : problem.side == DataProblem::Side::measured
+                  ? "the times of the batches are "
+                  : "the times of the simulator's output, against those of the batches, are ") +
+             times_text(problem.figure > 1 ? problem.figure : 1 / problem.figure) +
+             (problem.figure > 1 ? " times too long: " : " times too short: ") + mistaken_clock(problem.figure) + "?";
+    case Kind::clock_offset:
+      return problem.note == "start"
+                 ? std::string("the clocks of the two sides have no time in common: another start?")
+                 : "everything measured comes " + general_text(std::abs(problem.figure) / 60, 3) + " min " +
+                       (problem.figure > 0 ? "later" : "earlier") + " than simulated: clocks apart, or another start?";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
 std::string place_of(const DataProblem& problem) {
   using Kind = DataProblem::Kind;
   switch (problem.kind) {
@@ -196,6 +271,17 @@ std::string place_of(const DataProblem& problem) {
       return "pairing";
     case Kind::finding:
       return problem.batch + " " + problem.channel;
+    case Kind::left_out:
+      return (problem.side == DataProblem::Side::simulated ? "simulated " : "") + problem.batch + " " + problem.channel;
+    case Kind::unit:
+    case Kind::factor:
+    case Kind::sign:
+    case Kind::swapped:
+    case Kind::copied:
+    case Kind::clock_unit:
+    case Kind::clock_offset:
+    case Kind::datum:
+      return problem.certain ? "certain" : "suspected";
   }
   return {};
 }
@@ -215,8 +301,38 @@ std::string what_of(const DataProblem& problem) {
       return "sampling differs: simulated values are read off linearly at measured times";
     case Kind::finding:
       return problem.rule + (problem.note.empty() ? "" : ": " + problem.note);
+    case Kind::left_out:
+      return (problem.note.find_first_of("-,") == std::string::npos ? "row " : "rows ") + problem.note + ": " +
+             problem.rule + ", no reading; left out (read off between its neighbours)";
+    default:
+      return difference_of(problem) + where_in(problem);
   }
-  return {};
+}
+
+std::string remedy_of(const DataProblem& problem) {
+  using Kind = DataProblem::Kind;
+  switch (problem.kind) {
+    case Kind::unit:
+      if (problem.unit.find(' ') != std::string::npos)
+        return "write them in " +
+               std::string(problem.names.size() > 0 && problem.unit.find("um") != std::string::npos ? "um" : "degC");
+      return "name the unit in the header: " + problem.names[0] + " [" + problem.unit + "]";
+    case Kind::factor:
+      return "write both in um";
+    case Kind::sign:
+      return "turn the sign on one side: thermfit compares errors with errors";
+    case Kind::swapped:
+      return "exchange the names in the header" +
+             std::string(problem.side == DataProblem::Side::measured ? "" : " of one side, or the wires");
+    case Kind::copied:
+      return "leave " + problem.names[1] + " out, or read what it should hold";
+    case Kind::clock_unit:
+      return "name the unit of the clock in the header or by --time-unit";
+    case Kind::clock_offset:
+      return "let both clocks begin with the same sample";
+    default:
+      return {};
+  }
 }
 
 std::string claim_of(const WeakerClaim& claim) {

@@ -26,9 +26,10 @@ std::string looks_of(const Remaining& remaining, const std::string& unit);
 std::string schedule_of(const PlannedBlock& block);
 std::string settings_of(const PlannedBlock& block);
 std::string remark_of(const NextExperiment& next);
-/// Where a data problem lies, and what it is.
+/// Where a data problem lies, what it is, and what to write or do where that is known.
 std::string place_of(const DataProblem& problem);
 std::string what_of(const DataProblem& problem);
+std::string remedy_of(const DataProblem& problem);
 std::string claim_of(const WeakerClaim& claim);
 
 }  // namespace thermfit::cli

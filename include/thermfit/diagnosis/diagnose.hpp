@@ -12,6 +12,9 @@
 #include "thermfit/diagnosis/claims.hpp"
 #include "thermfit/diagnosis/data_problems.hpp"
 #include "thermfit/diagnosis/planning/next_experiment.hpp"
+#include "thermfit/diagnosis/sides/bad_cells.hpp"
+#include "thermfit/diagnosis/sides/machine_sides.hpp"
+#include "thermfit/diagnosis/sides/unlike_sides.hpp"
 #include "thermfit/diagnosis/where/remaining.hpp"
 #include "thermfit/diagnosis/where/transfer.hpp"
 #include "thermfit/diagnosis/where/where.hpp"
@@ -26,6 +29,7 @@ struct DiagnoseOptions {
   std::uint32_t seed = 1;            ///< of resampling
   SearchOptions search;              ///< how hard to look
   Thresholds thresholds;             ///< between evidence and verdict
+  SideLimits sides;                  ///< when data and machine are not written down alike
 };
 
 /// Fewest samples of a batch whose course in time can be compared.
@@ -191,14 +195,35 @@ inline void require_courses(const Campaign& real) {
 
 }  // namespace detail
 
-/// Diagnoses why `machine` disagrees with the measured batches `real`: calibrates it, tries every effect of `library`
-/// at every place together with the calibration, judges on batches not used, and says where the gap lies, what remains
-/// and what to measure next. The result is complete. Throws Error on a campaign that cannot drive the machine, an
-/// unknown name in `options`, or missing times. Allocates.
+/// Diagnoses why `machine` disagrees with the measured batches `recorded`: leaves out cells that are no readings; looks
+/// whether both are written down alike (units, signs, clocks, columns), and says so and nothing else where they are
+/// not; calibrates it, tries every effect of `library` at every place together with the calibration, judges on batches
+/// not used, and says where the gap lies, what remains and what to measure next. The result is complete. Throws Error
+/// on a campaign that cannot drive the machine, an unknown name in `options`, or missing times. Allocates.
 template <typename Scalar = double>
-Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& real, const EffectLibrary& library,
+Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& recorded, const EffectLibrary& library,
                    const DiagnoseOptions& options = {}) {
-  detail::require_courses(real);
+  detail::require_courses(recorded);
+  WithoutBadCells clean = without_bad_cells(recorded, DataProblem::Side::measured);
+  const Campaign& real = clean.campaign;
+  std::vector<DataProblem> problems = std::move(clean.left_out);
+  const auto note = [&](std::vector<DataProblem> more) {
+    for (DataProblem& one : more) problems.push_back(std::move(one));
+  };
+  {
+    ThermalNetwork placed = with_complete_effects(with_placements(machine), library);
+    const MachineRecord seen = observations_of(placed, real);
+    placed.uncertainty.start_share = start_share_sd(placed, seen);
+    note(compare_machine(placed, real, library, options.sides));
+    if (sides_unlike(problems)) {
+      note(data_problems(machine, real, clean.others));
+      Diagnosis unlike =
+          diagnosis_of_unlike_sides<Scalar>(sides_of<Scalar>(placed, seen, library), std::move(problems));
+      unlike.machine = machine.name;
+      return unlike;
+    }
+  }
+  note(data_problems(machine, real, clean.others));
   const Setting setting = setting_of(machine, real);
   const SearchResult found =
       search(machine, real, library, detail::wanted_candidates(library, setting, options), options.search);
@@ -217,7 +242,7 @@ Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& real, const Ef
   diagnosis.remaining = detail::remaining_of<Scalar>(found, judgement, diagnosis.gap, real, options.seed);
   diagnosis.calibration = detail::calibration_moves<Scalar>(found.at(judgement.best).fit);
   diagnosis.ruled_out = detail::ruled_out<Scalar>(found, judgement);
-  diagnosis.data_problems = data_problems(machine, real);
+  diagnosis.data_problems = std::move(problems);
   diagnosis.weaker_claims = detail::claims_of<Scalar>(found, machine, setting);
   diagnosis.judged_by = named_numbers(options.thresholds);
   diagnosis.judged_by.emplace_back("evidence_power", evidence_power);

@@ -245,7 +245,7 @@ struct Support {
   double leaves = 0;           ///< squared gap beyond expectation, in units of what is expected
 };
 
-/// A fault of the data seen on the way.
+/// A fault of the data: of one side by itself, or seen where the two sides are laid beside each other.
 struct DataProblem {
   /// What is wrong.
   enum class Kind {
@@ -254,14 +254,35 @@ struct DataProblem {
     not_simulated,  ///< channels of the batches that the simulator's output lacks; left out
     not_paired,     ///< a batch without a simulated counterpart; left out
     resampled,      ///< sampling differs: simulated values are read off at measured times
-    finding         ///< of a rule on single batches (findings/): stuck, spike, gap, …
+    finding,        ///< of a rule on single batches (findings/): stuck, spike, gap, …
+    left_out,       ///< cells that are no readings: read off between their neighbours instead
+    unit,           ///< `names` are written in `unit`, not in degC or um
+    factor,         ///< `names` move `figure` times as much as on the other side: counts?
+    sign,           ///< `names` have the other sign: errors here, corrections there
+    swapped,        ///< each of `names` holds what belongs to the next, the last what belongs to the first
+    copied,         ///< the second of `names` holds the first once more
+    clock_unit,     ///< times are `figure` times too long
+    clock_offset,   ///< everything measured comes `figure` seconds later than simulated
+    datum           ///< the probe of `names` counts from another zero in each of `batches`; left free
   };
-  Kind kind = Kind::finding;       ///< says which of the others are filled
-  std::vector<std::string> names;  ///< channels, or a batch
-  std::string batch;               ///< of a finding
-  std::string channel;             ///< of a finding; `time` for the clock
-  std::string rule;                ///< of a finding: "stuck"
-  std::string note;                ///< of a finding: what it means, in a few words
+  /// The column of which side it is.
+  enum class Side {
+    measured,   ///< of the batches
+    simulated,  ///< of the simulator
+    either      ///< the data cannot tell
+  };
+  Kind kind = Kind::finding;           ///< says which of the others are filled
+  std::vector<std::string> names;      ///< channels, or a batch
+  std::string batch;                   ///< of a finding
+  std::string channel;                 ///< of a finding; `time` for the clock
+  std::string rule;                    ///< of a finding: "stuck"
+  std::string note;                    ///< of a finding: what it means, in a few words
+  Side side = Side::measured;          ///< of a difference between the sides
+  bool certain = false;                ///< nothing else within belief does that: no effect is named on top of it
+  double figure = 0;                   ///< see Kind
+  double nats = 0;                     ///< log of how much more probable it makes the data than all else within belief
+  std::string unit{};                  ///< see Kind
+  std::vector<std::string> batches{};  ///< in which it is so; empty: in all
 };
 
 /// What these data do not allow to say.
@@ -286,10 +307,11 @@ struct WeakerClaim {
 
 /// Why a simulator disagrees with measured batches: the verdict, what it rests on, and what to do next.
 struct Diagnosis {
-  SimulatorKind simulator = SimulatorKind::network;       ///< decides how much can be said
-  std::string machine;                                    ///< its name; empty where the simulator was not a network
-  std::vector<std::string> batches;                       ///< names of those compared
-  Verdict verdict = Verdict::unknown;                     ///< `effects` is empty unless it is `effect` or `ambiguous`
+  SimulatorKind simulator = SimulatorKind::network;  ///< decides how much can be said
+  std::string machine;                               ///< its name; empty where the simulator was not a network
+  std::vector<std::string> batches;                  ///< names of those compared
+  Verdict verdict = Verdict::unknown;                ///< `effects` is empty unless it is `effect` or `ambiguous`
+  bool unlike_sides = false;  ///< the sides are not written down alike (data_problems): nothing else was looked for
   std::vector<FoundEffect> effects;                       ///< strongest first
   Gap gap;                                                ///< how large, level by level
   Where where;                                            ///< on the machine and in time

@@ -15,6 +15,9 @@
 #include "thermfit/diagnosis/leading_channel.hpp"
 #include "thermfit/diagnosis/outputs/suspects.hpp"
 #include "thermfit/diagnosis/outputs/views.hpp"
+#include "thermfit/diagnosis/sides/bad_cells.hpp"
+#include "thermfit/diagnosis/sides/output_sides.hpp"
+#include "thermfit/diagnosis/sides/unlike_sides.hpp"
 #include "thermfit/statistics/parallel.hpp"
 #include "thermfit/statistics/reading_step.hpp"
 
@@ -30,6 +33,7 @@ struct OutputsOptions {
   unsigned threads = 0;              ///< 0: all cores
   OutputThresholds thresholds;       ///< between outputs and verdict
   Thresholds shared;                 ///< of which rivals listed and folds that prove are the same as with a network
+  SideLimits sides;                  ///< when the two sides are not written down alike
   std::function<void(const std::string&)> progress;  ///< told each step before it begins; empty: nobody is told
 };
 
@@ -47,7 +51,20 @@ class OutputsDiagnosis {
         campaign_(pair_campaigns(real, sim, options.room)),
         drives_(campaign_) {}
 
-  Diagnosis run() {
+  /// What is wrong between the sides.
+  std::vector<DataProblem> problems() const {
+    return compare_sides(sides_of<Scalar>(campaign_, drives_), options_.sides);
+  }
+
+  /// What is said where it is certain.
+  Diagnosis unlike(std::vector<DataProblem> problems) const {
+    Diagnosis result = diagnosis_of_unlike_sides<Scalar>(sides_of<Scalar>(campaign_, drives_), std::move(problems));
+    result.simulator = SimulatorKind::outputs;
+    return result;
+  }
+
+  Diagnosis run(std::vector<DataProblem> problems) {
+    result_.data_problems = std::move(problems);
     start();
     for (int round = 0; round < limits_.most_effects; ++round) {
       say("weighing effects, round " + std::to_string(round + 1));
@@ -392,7 +409,7 @@ class OutputsDiagnosis {
     result_.where = views.where();
     if (named) result_.where.stages.push_back({word_of(stage_), 1});
     result_.remaining = views.remaining(result_.gap.rms, options_.seed);
-    result_.data_problems = pairing_problems(campaign_);
+    for (DataProblem& one : pairing_problems(campaign_)) result_.data_problems.push_back(std::move(one));
     result_.weaker_claims = claims_of_outputs<Scalar>(campaign_, beside);
     result_.next_experiment =
         named ? experiment_by_kind(result_.effects[0], library_, hours) : experiment_without_rivals(result_, hours);
@@ -414,7 +431,7 @@ class OutputsDiagnosis {
 }  // namespace detail
 
 /// Diagnoses the gap between measured batches and a simulator's output for them, paired by name. The result is
-/// complete.
+/// complete. Cells that are no readings are left out; sides that are not written down alike are told, and nothing else.
 ///
 /// Every effect of `library` acts through the trace it would leave in the outputs, given inputs, measured temperatures
 /// and time; what the simulator's own parameters could change (gains and lags of each drive's contribution, learnt from
@@ -424,7 +441,19 @@ class OutputsDiagnosis {
 template <typename Scalar = double>
 Diagnosis diagnose_outputs(const Campaign& real, const Campaign& simulated, const EffectLibrary& library,
                            const OutputsOptions& options = {}) {
-  return detail::OutputsDiagnosis<Scalar>(real, simulated, library, options).run();
+  WithoutBadCells measured = without_bad_cells(real, DataProblem::Side::measured),
+                  outputs = without_bad_cells(simulated, DataProblem::Side::simulated);
+  std::vector<DataProblem> problems = compare_clocks<Scalar>(measured.campaign, outputs.campaign);
+  if (sides_unlike(problems)) {
+    Diagnosis unlike = diagnosis_of_unlike_sides<Scalar>({}, std::move(problems));
+    unlike.simulator = SimulatorKind::outputs;
+    return unlike;
+  }
+  detail::OutputsDiagnosis<Scalar> diagnosis(measured.campaign, outputs.campaign, library, options);
+  problems = diagnosis.problems();
+  for (WithoutBadCells* side : {&measured, &outputs})
+    for (DataProblem& one : side->left_out) problems.push_back(std::move(one));
+  return sides_unlike(problems) ? diagnosis.unlike(std::move(problems)) : diagnosis.run(std::move(problems));
 }
 
 THERMFIT_COMPILED_TEMPLATE(Diagnosis diagnose_outputs<double>(const Campaign&, const Campaign&, const EffectLibrary&,

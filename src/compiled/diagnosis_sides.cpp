@@ -1,0 +1,15 @@
+// The instances of diagnosis/sides/ that thermfit::compiled holds; what lies below is compiled elsewhere.
+#include "thermfit/findings/findings.hpp"
+#include "thermfit/simulation.hpp"
+#include "thermfit/statistics/follows.hpp"
+#include "thermfit/statistics/prior_fit.hpp"
+#include "thermfit/statistics/residual_noise.hpp"
+#include "thermfit/statistics/whiteness.hpp"
+#include "thermfit/study.hpp"
+
+#undef THERMFIT_COMPILED_ELSEWHERE
+#define THERMFIT_COMPILED_ELSEWHERE
+
+#include "thermfit/diagnosis/sides/bad_cells.hpp"
+#include "thermfit/diagnosis/sides/machine_sides.hpp"
+#include "thermfit/diagnosis/sides/output_sides.hpp"
