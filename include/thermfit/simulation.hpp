@@ -4,6 +4,7 @@
 /// fitted to a campaign.
 
 #include "thermfit/calibration/calibrate.hpp"
+#include "thermfit/calibration/shortcomings.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/network/excitation.hpp"
 #include "thermfit/network/network_check.hpp"

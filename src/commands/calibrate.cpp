@@ -1,10 +1,17 @@
+#include <algorithm>
+
 #include "cli/command.hpp"
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
 #include "options/output.hpp"
 #include "report/calibration_json.hpp"
 #include "report/calibration_text.hpp"
+#include "report/diagnosis_words.hpp"
+#include "thermfit/calibration/shortcomings.hpp"
 #include "thermfit/calibration/start_tolerance.hpp"
+#include "thermfit/diagnosis/search/screen.hpp"
+#include "thermfit/diagnosis/sides/bad_cells.hpp"
+#include "thermfit/diagnosis/sides/machine_sides.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/json/machine.hpp"
 
@@ -20,8 +27,13 @@ const char* const details =
     "Prints each channel's rms before and after, what moved and by how many prior standard deviations, and what these "
     "data cannot tell: numbers they do not pin, and numbers they know only together. -o writes the calibrated "
     "machine.\n"
+    "Begins with what failed: a machine that fits no better than before, channels far beyond their noise, parameters "
+    "beyond belief or moved although the data do not know them; then what the machine may lack. Nothing is written "
+    "where parameters are beyond belief, at a bound, or no better than before. Batches that are not written down as "
+    "the "
+    "machine file is (units, signs, clocks, exchanged columns) are told and not fitted.\n"
     "A gap that remains afterwards is not miscalibration: see `thermfit diagnose`.\n"
-    "Exit codes: 0 done; 1 stopped before it converged; 2 could not be done.";
+    "Exit codes: 0 done; 1 failed, or stopped before it converged; 2 could not be done.";
 
 std::vector<Option> options() {
   std::vector<Option> all{
@@ -36,6 +48,23 @@ std::vector<Option> options() {
   return all;
 }
 
+/// What a machine may lack where its own numbers do not suffice: the candidates of the catalogue that promise most, by
+/// one linear step, each effect once.
+std::vector<ThermalNetwork::AddedEffect> suspects(const Calibration& calibration, const MachineRecord& seen,
+                                                  const Campaign& campaign, const EffectLibrary& effects) {
+  constexpr double worth_nats = 5;  // a suspicion, no name
+  const ScreeningBase<> base(seen, calibration.fit, effects, calibration.fit.prior.effects.size());
+  const std::vector<ThermalNetwork::AddedEffect> candidates =
+      effects.candidates(setting_of(calibration.fit.prior, campaign));
+  std::vector<ThermalNetwork::AddedEffect> result;
+  for (const Candidate& one : screen(base, effects, candidates, 0)) {
+    const bool known =
+        std::any_of(result.begin(), result.end(), [&](const auto& other) { return other.effect == one.added.effect; });
+    if (one.gain > worth_nats && !known && result.size() < 3) result.push_back(one.added);
+  }
+  return result;
+}
+
 Exit run(const Arguments& arguments, Console& console) {
   std::vector<std::string> files = arguments.positionals();
   if (files.size() < 2) throw UsageError("calibrate takes a machine file and batches");
@@ -48,20 +77,38 @@ Exit run(const Arguments& arguments, Console& console) {
     network.uncertainty.sensor_response = 0;
   else
     network = with_placements(std::move(network));
-  const MachineRecord seen = observations_of(network, read_campaign(arguments, console, files));
+  const WithoutBadCells clean =
+      without_bad_cells(read_campaign(arguments, console, files), DataProblem::Side::measured);
+  const MachineRecord seen = observations_of(network, clean.campaign);
   if (!fixed) network.uncertainty.start_share = start_share_sd(network, seen);
+  for (const DataProblem& one : clean.left_out) console.note(place_of(one) + ": " + what_of(one));
+  bool unlike = false;
+  for (const DataProblem& one : compare_machine(network, clean.campaign, effects)) {
+    unlike = unlike || one.certain;
+    console.note(place_of(one) + ": " + what_of(one) + "; " + remedy_of(one));
+  }
+  if (unlike) {
+    console.note("not calibrated: the machine and the batches are not written down alike");
+    return Exit::negative;
+  }
   CalibrationOptions how;
   how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));
   how.seed = static_cast<std::uint64_t>(arguments.integer("--seed", 0, 1L << 53).value_or(1));
   console.progress("calibrating …");
   const Calibration calibration = calibrate(seen, network, effects, how);
+  CalibrationVerdict verdict;
+  verdict.shortcomings = shortcomings(calibration, seen);
+  if (!verdict.shortcomings.empty()) verdict.suspects = suspects(calibration, seen, clean.campaign, effects);
   console.progress("");
-  if (output) save_machine(calibration.fit.network(), *output);
+  if (output && verdict.spoilt())
+    console.note(*output + ": not written: the calibrated machine is not to be believed");
+  else if (output)
+    save_machine(calibration.fit.network(), *output);
   if (arguments.has("--json"))
-    console.print(calibration_json(calibration, seen));
+    console.print(calibration_json(calibration, seen, verdict));
   else
-    print_calibration(calibration, seen, arguments.has("--all"), console);
-  return calibration.fit.converged ? Exit::done : Exit::negative;
+    print_calibration(calibration, seen, verdict, arguments.has("--all"), console);
+  return calibration.fit.converged && !verdict.failed() ? Exit::done : Exit::negative;
 }
 
 }  // namespace

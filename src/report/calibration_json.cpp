@@ -6,7 +6,8 @@ namespace thermfit::cli {
 
 using Json = nlohmann::ordered_json;
 
-std::string calibration_json(const Calibration& calibration, const MachineRecord& seen) {
+std::string calibration_json(const Calibration& calibration, const MachineRecord& seen,
+                             const CalibrationVerdict& verdict) {
   Json document{{"format", "thermfit-calibration/1"},
                 {"machine", calibration.fit.prior.name},
                 {"batches", seen.names},
@@ -15,6 +16,12 @@ std::string calibration_json(const Calibration& calibration, const MachineRecord
                 {"starts", calibration.log_posteriors.size()},
                 {"agreeing_starts", calibration.agreeing},
                 {"log_posterior", calibration.fit.log_posterior}};
+  document["failed"] = verdict.failed();
+  Json& shortcomings = document["shortcomings"] = Json::array();
+  for (const Shortcoming& one : verdict.shortcomings) shortcomings.push_back(shortcoming_in_words(one));
+  Json& suspects = document["suspects"] = Json::array();
+  for (const ThermalNetwork::AddedEffect& one : verdict.suspects)
+    suspects.push_back({{"effect", one.effect}, {"location", one.location}, {"driver", one.driver}});
   Json& channels = document["channels"] = Json::array();
   for (std::size_t c = 0; c < seen.channels.size(); ++c)
     channels.push_back({{"channel", seen.channels[c].name},

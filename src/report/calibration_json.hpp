@@ -5,6 +5,7 @@
 namespace thermfit::cli {
 
 /// The result as `thermfit-calibration/1`.
-std::string calibration_json(const Calibration& calibration, const MachineRecord& seen);
+std::string calibration_json(const Calibration& calibration, const MachineRecord& seen,
+                             const CalibrationVerdict& verdict);
 
 }  // namespace thermfit::cli

@@ -11,6 +11,9 @@
 namespace thermfit::cli {
 namespace {
 
+/// Reasons told before the rest is only counted.
+constexpr std::size_t most_reasons = 6;
+
 const Parameter& parameter(const Calibration& calibration, std::size_t j) { return calibration.fit.parameters[j]; }
 
 void print_channels(const Calibration& calibration, const MachineRecord& seen, Console& console) {
@@ -91,9 +94,72 @@ std::string identified_in_words(const Calibration& calibration, std::size_t j) {
   return words;
 }
 
-void print_calibration(const Calibration& calibration, const MachineRecord& seen, bool all, Console& console) {
+bool CalibrationVerdict::failed() const {
+  return std::any_of(shortcomings.begin(), shortcomings.end(),
+                     [](const Shortcoming& one) { return one.kind != Shortcoming::Kind::not_pinned; });
+}
+
+bool CalibrationVerdict::spoilt() const {
+  return std::any_of(shortcomings.begin(), shortcomings.end(), [](const Shortcoming& one) { return one.spoils(); });
+}
+
+std::string shortcoming_in_words(const Shortcoming& one) {
+  using Kind = Shortcoming::Kind;
+  const std::string value = general_text(one.value, 3) + (one.unit.empty() ? "" : " " + one.unit);
+  const std::string sds = fixed_text(std::abs(one.sds), 1) + " prior standard deviations";
+  switch (one.kind) {
+    case Kind::not_better:
+      return "it fits no better than the machine as given (" + general_text(one.before, 3) +
+             " times what noise excuses "
+             "before, " +
+             general_text(one.value, 3) + " times after)";
+    case Kind::misfit:
+      return one.name + " is still off by " + value + " rms, " + general_text(one.before, 2) +
+             " times what noise and lumping excuse: no parameter closes that";
+    case Kind::beyond_belief:
+      return one.name + " went from " + general_text(one.before, 3) + " to " + value + ", " + sds + ": beyond belief";
+    case Kind::at_bound:
+      return one.name + " stands at its bound, " + value;
+    case Kind::not_pinned:
+      return one.name + " moved by " + sds + " although these data do not pin it";
+  }
+  return {};
+}
+
+std::string suspect_in_words(const ThermalNetwork::AddedEffect& one) {
+  const std::string at = one.location.empty() ? "" : " at " + one.location;
+  if (one.effect == "missing-link") return "a link " + one.location;
+  if (one.effect == "thermal-memory") return "a node (a hidden mass)" + at;
+  if (one.effect == "heat-source" && one.driver == "constant")
+    return "a second boundary or a constant heat" + at + " (a wall, a floor, a neighbour of another temperature)";
+  if (one.effect == "heat-source") return "heat" + at + " driven by " + one.driver;
+  if (one.effect == "ambient-drift") return "the course of the room, which is no column";
+  if (one.effect == "initial-gradient") return "a start off the room" + at + " (\"initial\": \"measured\")";
+  return one.effect + at + (one.driver.empty() ? "" : " driven by " + one.driver);
+}
+
+void print_calibration(const Calibration& calibration, const MachineRecord& seen, const CalibrationVerdict& verdict,
+                       bool all, Console& console) {
+  if (verdict.failed()) {
+    console.line("The calibration failed:");
+    std::size_t told = 0;
+    for (const Shortcoming& one : verdict.shortcomings)
+      if (told < most_reasons) {
+        console.print(wrap(" - " + shortcoming_in_words(one), 80, 3));
+        ++told;
+      }
+    if (verdict.shortcomings.size() > told)
+      console.line(" - " + std::to_string(verdict.shortcomings.size() - told) + " more: --json lists them");
+    if (!verdict.suspects.empty()) {
+      std::string lacks;
+      for (const ThermalNetwork::AddedEffect& one : verdict.suspects)
+        lacks += (lacks.empty() ? "" : "; or ") + suspect_in_words(one);
+      console.print(wrap("The machine may lack " + lacks + ". `thermfit diagnose` weighs them.", 80, 0));
+    }
+    console.line();
+  }
   console.line(std::to_string(seen.batches()) + (seen.batches() == 1 ? " batch, " : " batches, ") +
-               std::to_string(seen.channels.size()) + " channels, " +
+               std::to_string(seen.channels.size()) + (seen.channels.size() == 1 ? " channel, " : " channels, ") +
                std::to_string(calibration.fit.parameters.size()) + " parameters");
   print_channels(calibration, seen, console);
   console.line();

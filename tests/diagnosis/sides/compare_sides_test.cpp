@@ -110,3 +110,28 @@ TEST_CASE("cells that are no readings are left out and told, and the diagnosis i
     if (one.kind == Kind::left_out) told.push_back(one.batch + " " + one.channel + " " + one.note);
   CHECK(told == std::vector<std::string>{"K02 T5 13", "K03 T2 41-42"});
 }
+
+TEST_CASE("a machine that starts warm has no bad first cell") {
+  Campaign real = bench::campaign(bench::machine(), 3, 3);
+  for (Batch& batch : real) batch.temperatures.values(0, 0) += 20;
+  CHECK(without_bad_cells(real, DataProblem::Side::measured).left_out.empty());
+}
+
+TEST_CASE("a machine that lacks what drives it most has no wrong clock for that") {
+  ThermalNetwork machine;
+  machine.nodes = {{"zone", 1000, 5}};
+  machine.sensors = {{"T1", 0}, {"Tamb", ThermalNetwork::ambient_node}};
+  machine.ambient = {ThermalNetwork::Ambient::Rule::column, "Tamb", 0};
+  machine.initial.rule = ThermalNetwork::Initial::Rule::measured;
+  Batch batch;
+  batch.name = "room";
+  batch.time_s = Vector::LinSpaced(120, 0, 7140);
+  batch.temperatures = {{"T1", "Tamb"}, Matrix(120, 2)};
+  double degC = 14;
+  for (Index k = 0; k < 120; ++k) {  // beside the room a wall that the machine does not know
+    const double t = batch.time_s(k), room = 4 * std::sin(t / 1500), wall = 12 + 6 * std::sin(t / 9000 + 1);
+    batch.temperatures.values.row(k) << degC, room;
+    degC += 0.02 * (5 * (room - degC) + 9 * (wall - degC));
+  }
+  for (const DataProblem& one : compare_machine(machine, {batch}, standard_effects())) CHECK_FALSE(one.certain);
+}

@@ -21,14 +21,17 @@ struct WithoutBadCells {
   std::vector<std::vector<Finding>> others;  ///< by batch: all other findings
 };
 
-/// Takes spikes and impossible numbers of up to `most_rows` rows in a row out of temperatures and errors. Allocates.
+/// Takes spikes (but for first and last rows) and impossible numbers of up to `most_rows` rows in a row out of
+/// temperatures and errors. Allocates.
 template <typename Scalar = double>
 WithoutBadCells without_bad_cells(Campaign campaign, DataProblem::Side side, Index most_rows = 5) {
   WithoutBadCells result;
   for (Batch& batch : campaign) {
     std::vector<Finding> others;
     for (Finding& one : find_faults(batch)) {
-      const bool bad = one.rule == FindingRule::spike || one.rule == FindingRule::impossible;
+      // A first or last reading off the others may be a machine that starts warm or was stopped.
+      const bool inside = one.first_row > 0 && one.last_row + 1 < batch.rows();
+      const bool bad = (one.rule == FindingRule::spike && inside) || one.rule == FindingRule::impossible;
       if (!bad || one.last_row - one.first_row >= most_rows) {
         others.push_back(std::move(one));
         continue;

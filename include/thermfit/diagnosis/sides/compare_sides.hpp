@@ -37,9 +37,10 @@ struct SideLimits {
   double exchanged_room = .5;     ///< with the room among them: the misfit of every channel, on the average
   double copied = .5;             ///< a simulator that shows two columns alike which differ by this share of their rise
   double relative_sd = .3;        ///< what a prior standard deviation is of a number of the simulator
-  double late = .67;              ///< a clock that is off must lower the misfit to this share
-  double room_degC = 20;          ///< rooms are as warm as that …
-  double room_sd_K = 10;          ///< … within this standard deviation …
+  double drive_leaves = .35;  ///< another clock or room must explain the channels but for this share of their course
+  double late = .67;          ///< a clock that is off must lower the misfit to this share
+  double room_degC = 20;      ///< rooms are as warm as that …
+  double room_sd_K = 10;      ///< … within this standard deviation …
   double warmest_start_degC = 45;  ///< … and no warmer
 };
 
@@ -63,6 +64,20 @@ class SideComparison {
       late();
     }
     return std::move(found_);
+  }
+
+  /// What belief leaves of the channels as given, as a share of how they move: the median.
+  double share_left() {
+    std::vector<double> shares;
+    for (std::size_t c = 0; c < sides_.channels.size(); ++c) {
+      VectorX<Scalar> moved = courses(c, c, all_).first;
+      centre(moved, all_);
+      const double swing = rms_of<Scalar>(moved);
+      if (swing > 3 * channel(c).noise) shares.push_back(weigh(c, all_, {}).left / swing);
+    }
+    if (shares.empty()) return 1;
+    std::nth_element(shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2), shares.end());
+    return shares[shares.size() / 2];
   }
 
   /// log probability of all channels as given.

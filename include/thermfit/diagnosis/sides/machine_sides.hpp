@@ -131,8 +131,9 @@ class DriveComparison {
   /// By how much the campaign written down otherwise is more probable in these batches.
   double nats(const Campaign& otherwise, const std::vector<std::size_t>& batches) const {
     const Sides with = sides(taken(otherwise, batches)), given = sides(taken(real_, batches));
-    return SideComparison<Scalar>(with, limits_).nats_as_given() -
-           SideComparison<Scalar>(given, limits_).nats_as_given();
+    SideComparison<Scalar> otherwise_seen(with, limits_);
+    if (otherwise_seen.share_left() > limits_.drive_leaves) return -1e300;  // better than nonsense is not good
+    return otherwise_seen.nats_as_given() - SideComparison<Scalar>(given, limits_).nats_as_given();
   }
 
   bool tell(DataProblem problem, const Campaign& otherwise, const std::vector<std::size_t>& batches,
