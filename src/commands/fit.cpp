@@ -27,7 +27,7 @@ const char* const details =
     "interval). -o saves it as thermfit-model/1 for predict, run and export.\n"
     "\n"
     "Points are the --points most sensitive ones (see rank), or all that --temperatures names with --points all. "
-    "--each-batch fits every batch by itself and saves one model a batch in --output-folder. Nearly dependent "
+    "--each-batch fits every batch by itself and saves one model a batch in the folder of -o. Nearly dependent "
     "temperatures make MLR refuse the fast way over moments; --row-wise goes over the rows by QR.\n"
     "--method transfer fits what carries over to the next batch: the rises of all points, the same through a "
     "first-order "
@@ -93,8 +93,10 @@ Exit fit_each(const Campaign& campaign, const Arguments& arguments, TrainingPlan
     models.emplace_back(batch.name, train({batch}, plan));
   }
   std::vector<std::string> names;
-  for (const auto& [name, model] : models) names.push_back(name + ".json");
-  const std::vector<std::string> paths = outputs_in_folder(arguments, names);
+  for (const auto& [name, model] : models) names.push_back(name);
+  const std::vector<std::string> paths = outputs_in_folder(arguments, names, ".json");
+  if (paths.empty() && arguments.has("--output"))
+    throw UsageError("--each-batch writes a file for each batch: -o FOLDER/");
   for (std::size_t b = 0; b < models.size(); ++b) {
     const auto& [name, model] = models[b];
     note_limits(model, plan, name + ": ", console);
@@ -148,7 +150,7 @@ Exit fit_to_transfer(const Campaign& campaign, const Arguments& arguments, Train
 }
 
 Exit run_fit(const Arguments& arguments, Console& console) {
-  const auto output = output_path(arguments);
+  const auto output = arguments.has("--each-batch") ? std::nullopt : output_path(arguments);
   TrainingPlan plan;
   plan.options = fit_options(arguments);
   plan.reference = temperature_reference(arguments);
@@ -195,7 +197,7 @@ Command fit_command() {
                    {"--rule", "RULE", "how they are chosen: 'correlation' (default) or 'fcgr'", 0, false},
                    {"--row-wise", "", "QR and NIPALS over the rows instead of moments", 0, false},
                    {"--each-batch", "", "one model a batch instead of one of all", 0, false},
-                   {"--output-folder", "DIR", "where --each-batch saves <batch>.json", 0, false},
+                   {"--output-folder", "DIR", "where --each-batch saves <batch>.json, as -o DIR/", 0, false},
                    {"--json", "", "the model document instead of words", 0, false},
                    {"--output", "FILE", "save the model, whole or not at all", 'o', false}});
   return {

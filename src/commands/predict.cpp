@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/labels.hpp"
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
@@ -9,6 +10,7 @@
 #include "options/fit_options.hpp"
 #include "options/output.hpp"
 #include "thermfit/io/csv/writer.hpp"
+#include "thermfit/io/files/atomic_file.hpp"
 #include "thermfit/io/json/model.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/model/probe.hpp"
@@ -22,7 +24,8 @@ const char* const details =
     "matched by name; a missing one is refused. The temperature reference (rise or absolute) is the model's own.\n"
     "\n"
     "Prints CSV: batch, row (from 1), time_min where there is a time, <error>_predicted in um, <error>_residual "
-    "(prediction minus measurement) where the error was measured, T2, SPE, and domain: inside, beyond95, beyond99. "
+    "(prediction minus measurement) where the error was measured, hotelling_T2, SPE, and domain: inside, beyond95, "
+    "beyond99. "
     "With --summary one line a batch instead: S where measured, and the share of foreign rows.\n"
     "--probe-every and --probe show what a probe on the machine would bring: the measured error of a row, less the "
     "predicted one, is added to all later predictions until the next reading. A reading more than six standard "
@@ -53,12 +56,12 @@ std::string domain_word(const TrainedModel& model, const DomainDistance<>& dista
   return outside_limits(model.domain, distance, 95).any() ? "beyond95" : "inside";
 }
 
-void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {
+std::string rows_text(const TrainedModel& model, const std::vector<Predicted>& all) {
   const bool timed = all.front().batch->has_time(), measured = any_measured(all);
   std::string header = timed ? "batch,row,time_min" : "batch,row";
   for (const std::string& error : model.errors) header += ',' + csv_field(error + "_predicted");
   for (const std::string& error : model.errors) header += measured ? ',' + csv_field(error + "_residual") : "";
-  console.line(header + ",hotelling_T2,SPE,domain");
+  std::string text = header + ",hotelling_T2,SPE,domain\n";
   for (const auto& [batch, p] : all)
     for (Index i = 0; i < p.errors.rows(); ++i) {
       std::string row = csv_field(batch->name) + ',' + std::to_string(batch->number_of(i));
@@ -68,8 +71,9 @@ void print_rows(const TrainedModel& model, const std::vector<Predicted>& all, Co
         row +=
             ',' + (p.residuals.cols() > 0 && std::isfinite(p.residuals(i, e)) ? fixed_text(p.residuals(i, e), 4) : "");
       const DomainDistance<>& d = p.distances[static_cast<std::size_t>(i)];
-      console.line(row + ',' + general_text(d.t2, 6) + ',' + general_text(d.spe, 6) + ',' + domain_word(model, d));
+      text += row + ',' + general_text(d.t2, 6) + ',' + general_text(d.spe, 6) + ',' + domain_word(model, d) + '\n';
     }
+  return text;
 }
 
 void print_summary(const TrainedModel& model, const std::vector<Predicted>& all, Console& console) {
@@ -78,9 +82,14 @@ void print_summary(const TrainedModel& model, const std::vector<Predicted>& all,
   for (const std::string& error : model.errors)
     if (measured) header.insert(header.end(), {"S " + error, "largest " + error});
   header.insert(header.end(), {"beyond 95 %", "beyond 99 %"});
+  std::vector<std::string> names;
+  for (const Predicted& one : all) names.push_back(one.batch->name);
+  const Labels labels(names, 'b', 18);
+  if (const std::string legend = labels.legend(); !legend.empty()) console.print(legend + '\n');
   Table table(header);
-  for (const auto& [batch, p] : all) {
-    std::vector<std::string> row{batch->name, std::to_string(batch->rows())};
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    const auto& [batch, p] = all[b];
+    std::vector<std::string> row{labels[b], std::to_string(batch->rows())};
     for (Index e = 0; e < model.model.errors() && measured; ++e) {
       const bool own = p.residuals.cols() > 0;
       row.push_back(own ? known_text(p.S_um(e), 2) : "-");
@@ -214,13 +223,20 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   for (const Batch& batch : campaign) all.push_back({&batch, predict(model, batch)});
   if (model.error_reference == ErrorReference::recorded) note_zeros(model, all, console);
   correct_by_probe(model, arguments, all, console);
-  if (const auto path = output_path(arguments)) console.write_to(*path);
+  const bool by_rows = !arguments.has("--json") && !arguments.has("--summary");
+  std::vector<std::string> names;
+  for (const Predicted& one : all) names.push_back(one.batch->name);
+  const std::vector<std::string> paths =
+      by_rows ? outputs_in_folder(arguments, names, ".csv") : std::vector<std::string>();
+  if (paths.empty())
+    if (const auto path = output_path(arguments)) console.write_to(*path);
+  for (std::size_t b = 0; b < paths.size(); ++b) write_atomically(paths[b], rows_text(model, {all[b]}));
   if (arguments.has("--json"))
     console.line(to_document(model, all).dump(1));
   else if (arguments.has("--summary"))
     print_summary(model, all, console);
-  else
-    print_rows(model, all, console);
+  else if (paths.empty())
+    console.print(rows_text(model, all));
   const auto limit = arguments.number("--limit", 0, 1e9);
   Exit exit = Exit::done;
   for (const auto& [batch, p] : all)
@@ -245,7 +261,9 @@ Command predict_command() {
                    {"--probe-age", "MIN", "an older one no longer counts", 0, false},
                    {"--limit", "UM", "exit 1 when S of a batch is above", 0, false},
                    {"--json", "", "thermfit-prediction/1 instead of CSV", 0, false},
-                   output_option("the result")});
+                   {"--output", "FILE",
+                    "the result goes to FILE, whole or not at all; a folder, or DIR/: rows of each batch to a file",
+                    'o', false}});
   return {"predict",
           "thermal errors from temperatures, and which rows are foreign to the model",
           "MODEL.json BATCH.csv|FOLDER …",

@@ -1,3 +1,4 @@
+#include "cli/labels.hpp"
 #include "cli/table.hpp"
 #include "commands/commands.hpp"
 #include "commands/learning_campaign.hpp"
@@ -69,12 +70,16 @@ Exit run_rank(const Arguments& arguments, Console& console) {
   const ErrorReference reference = error_reference(arguments);
   std::vector<std::string> header{"batch"};
   for (Index k = 1; k <= count; ++k) header.push_back(std::to_string(k));
+  std::vector<std::string> batches;
+  for (const Batch& batch : campaign) batches.push_back(batch.name);
+  const Labels batch_labels(batches, 'b', 18), sensors(names, 'p', label_width(static_cast<std::size_t>(count)));
   Table table(header);
-  for (const Ranking& ranking : rankings) {
-    if (ranking.batch == "all" && rankings.size() > 1) table.rule();
-    std::vector<std::string> row{ranking.batch};
+  for (std::size_t b = 0; b < rankings.size(); ++b) {
+    const Ranking& ranking = rankings[b];
+    if (b == batches.size()) table.rule();
+    std::vector<std::string> row{b < batches.size() ? batch_labels[b] : ranking.batch};
     for (const Index p : ranking.points) {
-      std::string cell = names[static_cast<std::size_t>(p)];
+      std::string cell = sensors[static_cast<std::size_t>(p)];
       for (Index e = 0; e < ranking.correlations.cols(); ++e) cell += ' ' + known_text(ranking.correlations(p, e), 2);
       row.push_back(cell);
     }
@@ -83,6 +88,7 @@ Exit run_rank(const Arguments& arguments, Console& console) {
   console.print(wrap("Temperature points, most sensitive first, with their correlation with " + name_list(errors) +
                          (reference == ErrorReference::recorded ? "" : ", " + in_words(reference)) + ":",
                      80, 0));
+  if (const std::string text = legends(batch_labels, sensors); !text.empty()) console.print(text + '\n');
   console.print(table.text());
   return Exit::done;
 }

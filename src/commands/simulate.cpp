@@ -26,10 +26,12 @@ const char* const details =
     "Exit codes: 0 done; 2 could not be done.";
 
 std::vector<Option> options() {
-  std::vector<Option> all{{"--output", "FILE", "write the result there instead of to stdout", 'o', false},
-                          {"--output-folder", "DIR", "write one file for each batch, named as the batch", 0, false},
-                          {"--decimals", "N", "digits after the point; 0 to 17 (default: 4)", 0, false},
-                          {"--nodes", "", "temperatures of all nodes instead of the sensors'", 0, false}};
+  std::vector<Option> all{
+      {"--output", "FILE", "write the result there instead of to stdout; a folder, or DIR/: one file for each batch",
+       'o', false},
+      {"--output-folder", "DIR", "one file for each batch, as -o DIR/", 0, false},
+      {"--decimals", "N", "digits after the point; 0 to 17 (default: 4)", 0, false},
+      {"--nodes", "", "temperatures of all nodes instead of the sensors'", 0, false}};
   for (Option& option : campaign_options()) all.push_back(std::move(option));
   return all;
 }
@@ -81,10 +83,11 @@ Exit run(const Arguments& arguments, Console& console) {
   if (!left_out.empty())
     console.note("the machine has no sensor for " + name_list({left_out.begin(), left_out.end()}) + "; left out");
 
-  if (const auto path = output_path(arguments)) console.write_to(*path);
   std::vector<std::string> names;
-  for (const Batch& batch : campaign) names.push_back(batch.name + ".csv");
-  const std::vector<std::string> paths = outputs_in_folder(arguments, names);
+  for (const Batch& batch : campaign) names.push_back(batch.name);
+  const std::vector<std::string> paths = outputs_in_folder(arguments, names, ".csv");
+  if (paths.empty())
+    if (const auto path = output_path(arguments)) console.write_to(*path);
   for (std::size_t b = 0; b < campaign.size(); ++b) {
     const std::string text =
         write_csv(simulated_batch(network, campaign[b], simulations[b], arguments.has("--nodes")), decimals);
@@ -105,7 +108,7 @@ Command simulate_command() {
           details,
           options(),
           {{"thermfit simulate machine.json K01.csv -o K01-simulated.csv", "one batch"},
-           {"thermfit simulate machine.json real --output-folder sim", "a campaign, a file for each batch"}},
+           {"thermfit simulate machine.json real -o sim/", "a campaign, a file for each batch"}},
           run};
 }
 

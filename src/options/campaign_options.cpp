@@ -84,6 +84,22 @@ char decimal_mark(const Arguments& arguments) {
   return word == "point" ? '.' : word == "comma" ? ',' : '\0';
 }
 
+/// `Z=mm`: the last equals sign divides, so that a name may have one.
+std::vector<CsvUnit> units(const Arguments& arguments) {
+  std::vector<CsvUnit> all;
+  for (const std::string& entry : arguments.list("--units")) {
+    const std::size_t equals = entry.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+      throw UsageError("--units has '" + entry + "'; allowed: NAME=UNIT, as in Z=mm or 'T*=degF'");
+    all.push_back({entry.substr(0, equals), entry.substr(equals + 1)});
+    if (!find_unit(all.back().unit))
+      throw UsageError("--units has '" + entry + "'; allowed units: " + std::string(unit_names(Quantity::temperature)) +
+                       "; " + std::string(unit_names(Quantity::length)) + "; " +
+                       std::string(unit_names(Quantity::time)));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<Option> campaign_options() {
@@ -97,6 +113,10 @@ std::vector<Option> campaign_options() {
        "of ISO 8601 date-times)",
        0, false},
       {"--time-unit", "UNIT", "unit of a clock that names none: us, ms, s, min, h, d (default: min)", 0, false},
+      {"--units", "NAME=UNIT,…",
+       "units of temperatures, errors and the clock, such as 'Z=mm,T*=degF'; they win over the file's (default: as "
+       "written behind the names or below them; else degC, um)",
+       0, true},
       {"--batch-column", "NAME", "split each file into batches by this column (default: a file is a batch)", 0, false},
       {"--join", "GLOBS",
        "files like a glob are one batch that its logger split, such as 'run1_*,run2_*' (default: a file is a batch)", 0,
@@ -131,6 +151,7 @@ CsvOptions csv_options(const Arguments& arguments) {
     throw UsageError("--time-unit is '" + options.time_unit + "'; allowed: " + std::string(unit_names(Quantity::time)));
   options.temperatures = arguments.list("--temperatures");
   options.errors = arguments.list("--errors");
+  options.units = units(arguments);
   if (arguments.has("--inputs")) {
     options.inputs = arguments.list("--inputs");
     if (*options.inputs == std::vector<std::string>{"none"}) options.inputs->clear();

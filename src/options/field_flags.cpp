@@ -28,6 +28,7 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, temperatures, "--temperatures"),
       THERMFIT_FLAG(CsvOptions, errors, "--errors"),
       THERMFIT_FLAG(CsvOptions, inputs, "--inputs"),
+      THERMFIT_FLAG(CsvOptions, units, "--units"),
       THERMFIT_FLAG(CsvOptions, batch_column, "--batch-column"),
       THERMFIT_FLAG(CsvOptions, join, "--join"),
       THERMFIT_FLAG(CsvOptions, missing, "--missing"),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/labels.hpp"
 #include "cli/table.hpp"
 #include "options/error_reference.hpp"
 #include "options/field_flags.hpp"
@@ -29,15 +30,25 @@ std::string upper_name(Method method) {
 
 std::string percent(double share) { return fixed_text(100 * share, 1) + " %"; }
 
+/// A table of batches by batches with more columns is not read by anybody.
+constexpr Index most_columns = 20;
+
+bool has_blank(const Labels& labels) {
+  return std::any_of(labels.all().begin(), labels.all().end(),
+                     [](const std::string& label) { return label.find(' ') != std::string::npos; });
+}
+
 /// One error's part of the report.
 class ErrorSection {
  public:
-  ErrorSection(const StudyReport& report, std::size_t error, Console& console)
-      : r_(report), e_(error), error_(report.errors[error]), console_(console) {}
+  ErrorSection(const StudyReport& report, std::size_t error, const Labels& batches, const Labels& sensors,
+               Console& console)
+      : r_(report), e_(error), error_(report.errors[error]), batches_(batches), sensors_(sensors), console_(console) {}
 
   void print() const {
     advice();
     summary();
+    if (e_ == 0) console_.print(legends(batches_, sensors_));
     correlations();
     const StudiedMethod<>& first = r_.study.methods.front();
     if (const SweepStep<>* step = first.chosen()) {
@@ -66,8 +77,7 @@ class ErrorSection {
 
   std::string points(const std::vector<Index>& chosen) const {
     std::string text;
-    for (const Index point : chosen)
-      text += (text.empty() ? "" : " ") + r_.temperatures[static_cast<std::size_t>(point)];
+    for (const Index point : chosen) text += (text.empty() ? "" : between_) + sensors_[static_cast<std::size_t>(point)];
     return text;
   }
 
@@ -152,12 +162,12 @@ class ErrorSection {
     heading("Correlation with " + error_ + ", and the " + std::to_string(r_.study.options.points) +
             " points chosen in each batch");
     std::vector<std::string> header{"batch"};
-    header.insert(header.end(), r_.temperatures.begin(), r_.temperatures.end());
+    header.insert(header.end(), sensors_.all().begin(), sensors_.all().end());
     header.emplace_back("chosen");
     Table table(header);
     table.left(header.size() - 1);
     for (std::size_t b = 0; b < r_.batches.size(); ++b) {
-      std::vector<std::string> row{r_.batches[b]};
+      std::vector<std::string> row{batches_[b]};
       for (Index p = 0; p < r_.study.points; ++p)
         row.push_back(known_text(r_.study.correlations[b](p, static_cast<Index>(e_)), 2));
       row.push_back(first.chosen() ? points(first.chosen()->models[b].points) : "");
@@ -180,7 +190,7 @@ class ErrorSection {
       const BatchModel<>& m = step.models[b];
       const Index batch = static_cast<Index>(b), error = static_cast<Index>(e_);
       const Vector& explained = m.fit.latent.explained_temperature_variance;
-      std::vector<std::string> row{r_.batches[b], std::to_string(m.fit.components),
+      std::vector<std::string> row{batches_[b], std::to_string(m.fit.components),
                                    explained.size() ? percent(explained(explained.size() - 1)) : "",
                                    fixed_text(step.S[e_](batch, batch), 2),
                                    fixed_text(m.fit.model.intercept(error), 3)};
@@ -198,29 +208,40 @@ class ErrorSection {
     heading("S of each batch's " + upper_name(method.method) + " model (row) on each batch (column), um");
     const Matrix& S = step.S[e_];
     const Robustness<>& robust = step.robustness[e_];
+    if (S.rows() > most_columns) {
+      print_models(S, robust);
+      console_.print(wrap("All " + std::to_string(S.rows()) + " x " + std::to_string(S.cols()) +
+                              " figures are in the output of --json.",
+                          80, 0));
+      return;
+    }
     std::vector<std::string> header{"model"};
-    header.insert(header.end(), r_.batches.begin(), r_.batches.end());
+    header.insert(header.end(), batches_.all().begin(), batches_.all().end());
     Table table(header);
     const int decimals = S.maxCoeff() < 10 ? 2 : 1;
     for (Index i = 0; i < S.rows(); ++i) {
-      std::vector<std::string> row{r_.batches[static_cast<std::size_t>(i)]};
+      std::vector<std::string> row{batches_[static_cast<std::size_t>(i)]};
       for (Index j = 0; j < S.cols(); ++j) row.push_back(fixed_text(S(i, j), decimals));
       table.add(row);
     }
     console_.print(table.text());
     console_.line();
+    print_models(S, robust);
+  }
+
+  void print_models(const Matrix& S, const Robustness<>& robust) const {
     Table summary({"model", "S_mean", "S_std", "largest S", "on"});
     for (Index i = 0; i < S.rows(); ++i) {
       Index worst = i == 0 ? 1 : 0;
       for (Index j = 0; j < S.cols(); ++j)
         if ((j != i || r_.study.options.own_batch) && S(i, j) > S(i, worst)) worst = j;
       const MeanAndStd<>& figure = robust.models[static_cast<std::size_t>(i)];
-      summary.add({r_.batches[static_cast<std::size_t>(i)], fixed_text(figure.S_mean, 2), fixed_text(figure.S_std, 2),
-                   fixed_text(S(i, worst), 2), r_.batches[static_cast<std::size_t>(worst)]});
+      summary.add({batches_[static_cast<std::size_t>(i)], fixed_text(figure.S_mean, 2), fixed_text(figure.S_std, 2),
+                   fixed_text(S(i, worst), 2), batches_[static_cast<std::size_t>(worst)]});
     }
     summary.rule();
     summary.add({"per model", fixed_text(robust.per_model.S_mean, 2), fixed_text(robust.per_model.S_std, 2),
-                 fixed_text(robust.worst_S, 2), r_.batches[static_cast<std::size_t>(robust.worst_batch)]});
+                 fixed_text(robust.worst_S, 2), batches_[static_cast<std::size_t>(robust.worst_batch)]});
     summary.add({"pooled", fixed_text(robust.pooled.S_mean, 2), fixed_text(robust.pooled.S_std, 2)});
     console_.print(summary.text());
   }
@@ -277,8 +298,8 @@ class ErrorSection {
                  compared(f->per_model.S_mean, against(reference ? reference->per_model.S_mean : 0)),
                  compared(f->per_model.S_std, against(reference ? reference->per_model.S_std : 0)),
                  fixed_text(f->pooled.S_std, 2),
-                 fixed_text(f->worst_S, 1) + " " + r_.batches[static_cast<std::size_t>(f->worst_model)] + "," +
-                     r_.batches[static_cast<std::size_t>(f->worst_batch)]});
+                 fixed_text(f->worst_S, 1) + " " + batches_[static_cast<std::size_t>(f->worst_model)] + "," +
+                     batches_[static_cast<std::size_t>(f->worst_batch)]});
     }
     const bool quoted = r_.card && e_ == 0 && !r_.card->published.empty();
     if (quoted) {
@@ -342,7 +363,7 @@ class ErrorSection {
       }
       const std::size_t worst = row.result->worst(e_, &Residuals<>::rmse);
       table.add({title(row), fixed_text(row.result->mean(e_, &Residuals<>::rmse), 2),
-                 fixed_text(row.result->residuals[worst][e_].rmse(), 2), r_.batches[worst],
+                 fixed_text(row.result->residuals[worst][e_].rmse(), 2), batches_[worst],
                  fixed_text(row.result->pooled(e_).rmse(), 2),
                  fixed_text(row.result->mean(e_, &Residuals<>::rmse_without_bias), 2)});
     }
@@ -354,6 +375,8 @@ class ErrorSection {
   const StudyReport& r_;
   std::size_t e_;
   const std::string& error_;
+  const Labels &batches_, &sensors_;
+  const std::string between_ = has_blank(sensors_) ? ", " : " ";  ///< names of points
   Console& console_;
 };
 
@@ -381,7 +404,10 @@ void print_study(const StudyReport& report, Console& console) {
     const std::string origin = report.card->origin == "simulated" ? "These data are simulated: " : "Measured: ";
     console.print(wrap(origin + report.card->title + ". " + report.card->remark, 80, 0));
   }
-  for (std::size_t e = 0; e < report.errors.size(); ++e) ErrorSection(report, e, console).print();
+  const bool matrix = report.batches.size() <= static_cast<std::size_t>(most_columns);
+  const Labels batches(report.batches, 'b', matrix ? label_width(report.batches.size()) : 16);
+  const Labels sensors(report.temperatures, 'p', label_width(report.temperatures.size()));
+  for (std::size_t e = 0; e < report.errors.size(); ++e) ErrorSection(report, e, batches, sensors, console).print();
 }
 
 }  // namespace thermfit::cli

@@ -44,7 +44,7 @@ inline Finding unit_finding(const std::string& name, double start, double usual,
           start,
           usual,
           "degC",
-          "in " + unit + " it starts as " + like + ": name the unit, " + name + " [" + unit + "]"};
+          "in " + unit + " it starts as " + like + ": name the unit, CsvOptions::units = '" + name + "=" + unit + "'"};
 }
 
 }  // namespace detail
@@ -91,7 +91,7 @@ inline std::vector<Finding> unit_findings(const Batch& batch, const UnitLimits& 
     else if (scale.range() > 0 && scale.range() < limits.smallest_range_um &&
              scale.resolution < limits.finest_step_um && largest_rise > limits.warmed_by_K)
       findings.push_back({FindingRule::unit, name, 0, 0, scale.range(), limits.smallest_range_um, "um",
-                          "too little for micrometres: name the unit, " + name + " [mm]"});
+                          "too little for micrometres: name the unit, CsvOptions::units = '" + name + "=mm'"});
   }
   return findings;
 }

@@ -111,13 +111,32 @@ const std::vector<Case> cases{
 
     // Roles and units.
     {"a clock in an unknown unit", "time [fortnight],T1\n0,20\n",
-     "a.csv:1:1: time is in 'fortnight'; allowed: us, ms, s, min, h, d; name the unit in brackets behind the name"},
+     "a.csv:1:1: time is in 'fortnight'; allowed: us, ms, s, min, h, d; write one of these behind the name, or say "
+     "CsvOptions::units = time=s"},
     {"an unknown unit", "time_min,T1 [degX]\n0,20\n",
-     "a.csv:1:10: T1 is in 'degX'; allowed: degC, °C, C, degF, °F, F, K; name the unit in brackets behind the name"},
+     "a.csv:1:10: T1 is in 'degX'; allowed: degC, °C, C, degF, °F, F, K; write one of these behind the name, or say "
+     "CsvOptions::units = T1=degC"},
     {"a unit of another quantity", "time_min,T1,Z (degC)\n0,20,1\n",
      "a.csv:1:13: Z is in 'degC', a unit of another quantity; allowed: um, µm, nm, mm, cm, m, in, mil, microinch, or "
      "with "
-     "a factor as in 0.1 um; name the unit in brackets behind the name"},
+     "a factor as in 0.1 um; write one of these behind the name, or say CsvOptions::units = Z=um"},
+    {"a unit for a column that is not there", "time_min,T1,Z\n0,20,1\n",
+     "a.csv: no column 'Zz' (CsvOptions::units); did you mean Z?; allowed: time_min, T1, Z",
+     [](CsvOptions& options) {
+       options.units = {{"Zz", "mm"}};
+     }},
+    {"a unit for an input", "time_min,T1,rpm\n0,20,1\n",
+     "a.csv: 'rpm' (CsvOptions::units) is no temperature, no thermal error and no clock; allowed: units of those; an "
+     "input is left as written; a role is given by CsvOptions::temperatures or CsvOptions::errors",
+     [](CsvOptions& options) {
+       options.units = {{"rpm", "mm"}};
+     }},
+    {"a unit of another quantity by option", "time_min,T1,Z\n0,20,1\n",
+     "a.csv:1:13: Z is in 'degF', a unit of another quantity; allowed: um, µm, nm, mm, cm, m, in, mil, microinch, or "
+     "with a factor as in 0.1 um; write one of these behind the name, or say CsvOptions::units = Z=um",
+     [](CsvOptions& options) {
+       options.units = {{"Z", "degF"}};
+     }},
     {"two units for one column", "time_min,T1 [degC],Z\nmin,degF,um\n0,20,1\n",
      "a.csv:2:5: unit degF below a name that says degC; allowed: one unit for a column"},
     {"a clock of two units", "time_s,T1\n0,20\n",

@@ -19,11 +19,12 @@ struct CsvDialect {
   char decimal_mark = '.';  ///< `.` or `,`
   bool bom = false,         ///< a byte order mark comes first
       crlf = false,         ///< the first line ends in CR LF
+      returns = false,      ///< carriage returns stand inside lines, and count as blanks
       compressed = false,   ///< it is gzip
       unit_row = false;     ///< the line below the names holds their units
 
-  /// Whether commas separate, points are decimal marks and there is no unit row. Does not allocate.
-  bool is_plain() const { return separator == ',' && decimal_mark == '.' && !unit_row; }
+  /// Whether commas separate, points are decimal marks, and there is nothing to be told. Does not allocate.
+  bool is_plain() const { return separator == ',' && decimal_mark == '.' && !unit_row && !returns; }
 
   /// "semicolon-separated, decimal comma, unit row".
   std::string description() const {
@@ -32,6 +33,7 @@ struct CsvDialect {
     if (unit_row) text += ", unit row";
     if (bom) text += ", byte order mark";
     if (crlf) text += ", CRLF";
+    if (returns) text += ", carriage returns inside lines taken as blanks";
     if (compressed) text += ", gzip";
     return text;
   }
@@ -207,6 +209,8 @@ inline CsvDialect detect_dialect(const detail::CsvLines& lines, const detail::Cs
   dialect.bom = lines.has_bom();
   dialect.crlf = lines.has_crlf();
   dialect.compressed = lines.compressed();
+  dialect.returns = std::any_of(evidence.lines.begin(), evidence.lines.end(),
+                                [](const auto& line) { return line.text.find('\r') != std::string_view::npos; });
   dialect.separator =
       options.separator ? options.separator : detail::detect_separator(evidence, options.columns.size(), lines.name());
   dialect.decimal_mark = options.decimal_mark ? options.decimal_mark

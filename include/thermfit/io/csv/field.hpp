@@ -39,7 +39,8 @@ struct CsvFieldError {
   const char* remedy;
 };
 
-inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+/// A carriage return counts too: files with CR LF that were pasted beside each other have some inside their lines.
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 inline std::string_view trim(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);

@@ -8,21 +8,11 @@
 #include <vector>
 
 #include "thermfit/io/csv/dialect.hpp"
+#include "thermfit/io/csv/title.hpp"
 #include "thermfit/io/problems.hpp"
 #include "thermfit/io/units.hpp"
 
 namespace thermfit {
-
-/// A column as the header names it.
-struct CsvColumn {
-  std::string name;          ///< without a unit in brackets
-  std::string title;         ///< as written
-  std::string unit;          ///< as written in brackets behind the name or in the unit row; empty when not told
-  std::size_t position = 0;  ///< of the title in its line, from 1
-
-  /// Whether `text` is its name or its title, spelled exactly. Does not allocate.
-  bool is_called(const std::string& text) const { return text == name || text == title; }
-};
 
 namespace detail {
 
@@ -57,23 +47,6 @@ inline bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// `T1 [degC]` is column T1 in degC. Square brackets always hold a unit; round ones only one that is known.
-inline CsvColumn column_of(const CsvField& field) {
-  CsvColumn column{field.name(), {}, {}, field.column};
-  column.title = column.name;
-  const std::string_view title = column.title;
-  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
-    const std::size_t begin = title.rfind(open);
-    if (begin == std::string_view::npos || begin == 0 || title.back() != close) continue;
-    const std::string_view unit = trim(title.substr(begin + 1, title.size() - begin - 2));
-    if (open == '(' && !find_unit(unit)) continue;
-    column.unit = unit;
-    column.name = trim(title.substr(0, begin));
-    break;
-  }
-  return column;
-}
-
 /// A line of units below the names: no cell is a number, at least one is a unit of temperature, length or time.
 inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::string>& units) {
   units.clear();
@@ -101,12 +74,14 @@ inline std::vector<CsvColumn> columns_in(std::string_view line, std::size_t numb
     throw problem(place(name, number, broken->column), {broken->found}, {}, {broken->remedy});
   std::vector<CsvColumn> columns;
   for (const CsvField& field : fields) columns.push_back(column_of(field));
+  keep_names_apart(columns);
   return columns;
 }
 
 inline CsvHeader names_given(const CsvOptions& options) {
   CsvHeader header;
   for (const std::string& name : options.columns) header.columns.push_back(column_of({name, 0, false}));
+  keep_names_apart(header.columns);
   return header;
 }
 
@@ -141,7 +116,8 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
     header.content_lines = 2;
     for (std::size_t c = 0; c < header.columns.size(); ++c) {
       std::string& unit = header.columns[c].unit;
-      if (!unit.empty() && !units[c].empty() && unit != units[c])
+      const auto above = find_unit(unit), below = find_unit(units[c]);
+      if (!unit.empty() && !units[c].empty() && !(above && below && above->is_same_as(*below)) && unit != units[c])
         throw problem(place(name, evidence.lines[1].number, fields[c].column),
                       {"unit ", units[c], " below a name that says ", unit}, {"one unit for a column"});
       if (unit.empty()) unit = units[c];

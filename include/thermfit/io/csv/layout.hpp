@@ -20,6 +20,8 @@ struct CsvRoles {
       inputs;                             ///< other columns of numbers, whose values are left as written
   std::vector<std::string> ignored;       ///< text, empty, or not asked for
   std::vector<std::string> converted;     ///< "T1 from degF"
+  std::vector<std::string> contradicted;  ///< "Z in mm, its title says um": CsvOptions::units against the file
+  std::vector<std::string> nearly;        ///< "t1 (not T1)": an input whose name is nearly that of another role
   bool assumed_minutes = false;           ///< nobody said what the clock counts
 };
 
@@ -69,6 +71,7 @@ class LayoutMaker {
     layout_.slots.resize(header.columns.size() + header.empty_last_column);
     if (header.empty_last_column) layout_.slots.back().role = CsvRole::empty;
     taken_.resize(header.columns.size());
+    unit_used_.resize(options.units.size());
   }
 
   CsvLayout make() {
@@ -88,8 +91,11 @@ class LayoutMaker {
     add_values(errors, layout_.roles.errors, Quantity::length);
     add_values(options_.inputs ? choose(*options_.inputs, "CsvOptions::inputs", "an input") : remaining_numbers(),
                layout_.roles.inputs, std::nullopt);
-    for (std::size_t c = 0; c < taken_.size(); ++c)
-      if (taken_[c].empty()) layout_.roles.ignored.push_back(column(c).name);
+    for (std::size_t c = 0; c < taken_.size(); ++c) {
+      if (taken_[c].empty()) layout_.roles.ignored.push_back(column(c).title);
+      if (taken_[c] == "an input") note_nearly(c);
+    }
+    require_units_used();
     return std::move(layout_);
   }
 
@@ -108,7 +114,7 @@ class LayoutMaker {
 
   std::vector<std::string> names() const {
     std::vector<std::string> all;
-    for (const CsvColumn& one : header_.columns) all.push_back(one.name);
+    for (const CsvColumn& one : header_.columns) all.push_back(visible_name(one.unit_in_words ? one.title : one.name));
     return all;
   }
 
@@ -123,22 +129,26 @@ class LayoutMaker {
   std::vector<std::size_t> choose(const std::vector<std::string>& patterns, const std::string& option,
                                   const std::string& role) {
     std::vector<std::size_t> chosen;
-    const auto add = [&](std::size_t c) {
+    const auto add = [&](std::size_t c, bool by_title) {
       if (std::find(chosen.begin(), chosen.end(), c) == chosen.end()) chosen.push_back(c);
       take(c, role);
+      if (by_title && column(c).unit_in_words) layout_.columns[c].name = column(c).title;
     };
     for (const std::string& pattern : patterns) {
       const bool exact = std::any_of(header_.columns.begin(), header_.columns.end(),
                                      [&](const CsvColumn& one) { return one.is_called(pattern); });
       if (exact || pattern.find_first_of("*?") == std::string::npos) {
-        add(find(pattern, option));
+        const std::size_t c = find(pattern, option);
+        add(c, pattern != column(c).name);
         continue;
       }
       bool any = false;
       for (std::size_t c = 0; c < header_.columns.size(); ++c) {
         const bool is_text = contents_[c].text && !contents_[c].numbers;
-        if ((!taken_[c].empty() && taken_[c] != role) || is_text || !matches_glob(pattern, column(c).name)) continue;
-        add(c);
+        const bool by_name = matches_glob(pattern, column(c).name),
+                   by_title = column(c).unit_in_words && matches_glob(pattern, column(c).title);
+        if ((!taken_[c].empty() && taken_[c] != role) || is_text || !(by_name || by_title)) continue;
+        add(c, !by_name);
         any = true;
       }
       if (!any)
@@ -195,9 +205,71 @@ class LayoutMaker {
       CsvSlot& slot = layout_.slots[c];
       slot.role = CsvRole::value;
       slot.index = values_++;
-      if (quantity) set_unit(slot, c, *quantity, column(c).unit);
-      role_names.push_back(column(c).name);
+      // What nobody asked for is left as written, its name too.
+      std::string& name = layout_.columns[c].name;
+      if (!quantity && column(c).unit_in_words) name = column(c).title;
+      if (quantity) set_unit(slot, c, *quantity, unit_of(c, *quantity));
+      role_names.push_back(name);
     }
+  }
+
+  /// The unit of a column: what the options say, else what the file says.
+  std::string unit_of(std::size_t c, Quantity quantity) {
+    const std::string& in_file = column(c).unit;
+    for (std::size_t u = 0; u < options_.units.size(); ++u) {
+      const auto& [pattern, text] = options_.units[u];
+      const auto said = find_unit(text);
+      if (!said) throw problem("CsvOptions::units", {shown(text), " is no unit"}, {all_units()});
+      if (!column(c).is_called(pattern) && (said->quantity != quantity || !(matches_glob(pattern, column(c).name) ||
+                                                                            matches_glob(pattern, column(c).title))))
+        continue;
+      unit_used_[u] = true;
+      const auto written = find_unit(in_file);
+      if (!in_file.empty() && !(written && written->is_same_as(*said)))
+        layout_.roles.contradicted.push_back(layout_.columns[c].name + " in " + text + ", the file says " + in_file);
+      return text;
+    }
+    return in_file;
+  }
+
+  static std::string all_units() {
+    return std::string(unit_names(Quantity::temperature)) + "; " + std::string(unit_names(Quantity::length)) + "; " +
+           std::string(unit_names(Quantity::time));
+  }
+
+  /// Throws when a unit was given for what is not there or has none.
+  void require_units_used() const {
+    for (std::size_t u = 0; u < options_.units.size(); ++u) {
+      if (unit_used_[u]) continue;
+      const std::string& pattern = options_.units[u].column;
+      const auto called = [&](const CsvColumn& one) { return one.is_called(pattern); };
+      if (std::any_of(header_.columns.begin(), header_.columns.end(), called))
+        throw problem(name_, {shown(pattern), " (CsvOptions::units) is no temperature, no thermal error and no clock"},
+                      {"units of those"},
+                      {"an input is left as written; a role is given by CsvOptions::temperatures "
+                       "or CsvOptions::errors"});
+      if (options_.errors_may_lack) continue;
+      throw problem(name_, {"no column ", shown(pattern), " (CsvOptions::units)", did_you_mean(pattern, names())},
+                    {name_list(names())});
+    }
+  }
+
+  /// Says of an input that its name is nearly that of a temperature or thermal error: but for case and blanks.
+  void note_nearly(std::size_t c) {
+    if (options_.plain || options_.inputs) return;
+    const auto parts = split_unit_in_words(column(c).title);
+    std::string bare;
+    for (std::string_view rest = parts ? parts->first : std::string_view(column(c).name); !rest.empty();) {
+      const std::size_t hidden = blank_in_front(rest);
+      if (hidden == 0)
+        bare += rest.front() >= 'a' && rest.front() <= 'z' ? static_cast<char>(rest.front() - 32) : rest.front();
+      rest.remove_prefix(std::max<std::size_t>(1, hidden));
+    }
+    const std::string shown_name = visible_name(column(c).title);
+    if (options_.temperatures.empty() && is_temperature_name(bare))
+      layout_.roles.nearly.push_back(shown_name + " (nearly " + bare + ": CsvOptions::temperatures = NAMES)");
+    else if (options_.errors.empty() && is_error_name(bare))
+      layout_.roles.nearly.push_back(shown_name + " (nearly " + bare + ": CsvOptions::errors = NAMES)");
   }
 
   void set_unit(CsvSlot& slot, std::size_t c, Quantity quantity, const std::string& text) {
@@ -205,10 +277,15 @@ class LayoutMaker {
     const auto unit = find_unit(text);
     if (!unit || unit->quantity != quantity)
       throw problem(place_of(c), {column(c).name, " is in ", shown(text), (unit ? ", a unit of another quantity" : "")},
-                    {std::string(unit_names(quantity))}, {"name the unit in brackets behind the name"});
+                    {std::string(unit_names(quantity))},
+                    {"write one of these behind the name, or say CsvOptions::units = ", column(c).name, "=",
+                     quantity == Quantity::temperature ? "degC"
+                     : quantity == Quantity::length    ? "um"
+                                                       : "s"});
     slot.unit = *unit;
     slot.convert = !unit->is_canonical();
-    if (slot.convert && quantity != Quantity::time) layout_.roles.converted.push_back(column(c).name + " from " + text);
+    if (slot.convert && quantity != Quantity::time)
+      layout_.roles.converted.push_back(layout_.columns[c].name + " from " + text);
   }
 
   void assign_time() {
@@ -229,9 +306,10 @@ class LayoutMaker {
     slot.role = contents_[c].date_time && !contents_[c].numbers ? CsvRole::date_time : CsvRole::time;
     if (slot.role == CsvRole::date_time) return;
     const std::string by_name = time_unit_in(column(c).name);
-    std::string unit = column(c).unit.empty() && by_name != "?" ? by_name : column(c).unit;
+    std::string unit = unit_of(c, Quantity::time);
+    if (unit.empty() && by_name != "?") unit = by_name;
     if (!options_.time_unit.empty() && !unit.empty() && find_unit(unit) && find_unit(options_.time_unit) &&
-        unit != options_.time_unit)
+        !find_unit(unit)->is_same_as(*find_unit(options_.time_unit)))
       throw problem(place_of(c), {column(c).title, " says ", unit, ", CsvOptions::time_unit says ", options_.time_unit},
                     {"one unit for a column"});
     layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
@@ -244,6 +322,7 @@ class LayoutMaker {
   const CsvOptions& options_;
   std::string name_;
   CsvLayout layout_;
+  std::vector<bool> unit_used_;     ///< of options.units
   std::vector<std::string> taken_;  ///< role of each column, empty when it has none yet
   std::size_t values_ = 0;
 };

@@ -15,6 +15,12 @@ enum class MissingValues {
   keep    ///< NaN in the batch: for tools that look for faults
 };
 
+/// What unit columns are in, whatever their titles say.
+struct CsvUnit {
+  std::string column;  ///< name or title, or a glob that finds columns in a unit of this kind only
+  std::string unit;    ///< of time, temperature or length
+};
+
 /// How to read a CSV file. The defaults read what formats.md describes; each member overrides one guess.
 /// A name may be a glob of `*` and `?`; a name that is spelled exactly as a column wins over the glob.
 struct CsvOptions {
@@ -28,6 +34,7 @@ struct CsvOptions {
   bool errors_may_lack = false;                    ///< of `errors`, only those that a file has are read, and a cell
                                                    ///< without a value is NaN, whatever `missing` says
   std::optional<std::vector<std::string>> inputs;  ///< absent: every other column of numbers
+  std::vector<CsvUnit> units;                      ///< win over the titles, which is told
   bool inputs_may_lack = false;                  ///< a cell of an input without a value is NaN, whatever `missing` says
   std::string batch_column;                      ///< splits a file into batches by its value; empty: one batch
   std::vector<std::string> join;                 ///< globs: the files that one of them names are parts of one batch

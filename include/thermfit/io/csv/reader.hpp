@@ -268,6 +268,8 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
     if (file.roles.assumed_minutes)
       add(file, file.roles.time + " names no unit: minutes (CsvOptions::time_unit tells another)");
     if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
+    if (!file.roles.contradicted.empty()) add(file, "as CsvOptions::units says: " + name_list(file.roles.contradicted));
+    if (!file.roles.nearly.empty()) add(file, "taken as inputs: " + name_list(file.roles.nearly));
     if (!file.roles.ignored.empty() && !options.inputs)
       add(file, "left out, no numbers: " + name_list(file.roles.ignored));
     if (file.missing == 0 || options.missing == MissingValues::keep) continue;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "thermfit/batch/batch.hpp"
+#include "thermfit/io/csv/title.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit {
@@ -17,7 +18,8 @@ inline std::string csv_field(const std::string& text) {
   return result + '"';
 }
 
-/// A batch as CSV that read_campaign reads back: `time_s`, temperatures, errors, inputs. Numbers are the
+/// A batch as CSV that read_campaign reads back: `time_s`, temperatures, errors, inputs; where a name ends in a unit,
+/// as Z_mm does, the one of the numbers stands behind it. Numbers are the
 /// shortest text that gives the same double again, unless `decimals` of temperatures and errors is given; missing
 /// values are empty.
 inline std::string write_csv(const Batch& batch, int decimals = -1) {
@@ -33,7 +35,10 @@ inline std::string write_csv(const Batch& batch, int decimals = -1) {
   if (batch.has_time()) field("time_s");
   const Channels* const groups[] = {&batch.temperatures, &batch.errors, &batch.inputs};
   for (const Channels* group : groups)
-    for (const std::string& name : group->names) field(csv_field(name));
+    for (const std::string& name : group->names) {
+      const bool says_a_unit = group != &batch.inputs && detail::split_unit_in_words(name);
+      field(csv_field(says_a_unit ? name + (group == &batch.temperatures ? " [degC]" : " [um]") : name));
+    }
   text += '\n';
   for (Index row = 0; row < batch.rows(); ++row) {
     separator = "";
