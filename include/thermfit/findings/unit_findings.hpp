@@ -19,7 +19,7 @@ struct UnitLimits {
   double alike_scatters = 3;       ///< … so many standard deviations of the others
   double seasons_K = 5;            ///< … or as in the other batches, within their range and that
   double away_K = 10;              ///< as written it is farther from them than this
-  double largest_error_um = 5000;  ///< a thermal error beyond looks like nanometres or counts
+  double largest_error_um = 5000;  ///< a thermal error that moves by more looks like nanometres or counts
   double smallest_range_um = 0.5;  ///< one that moves less in all …
   double finest_step_um = 0.002;   ///< … and is written down finer …
   double warmed_by_K = 3;          ///< … while some temperature rose by more, looks like millimetres
@@ -85,9 +85,13 @@ inline std::vector<Finding> unit_findings(const Batch& batch, const UnitLimits& 
     const SeriesScale scale = series_scale(series);
     const std::string& name = batch.errors.names[static_cast<std::size_t>(c)];
     const double size = std::max(std::abs(scale.lowest), std::abs(scale.highest));
-    if (size > limits.largest_error_um)
+    if (scale.range() > limits.largest_error_um)
       findings.push_back({FindingRule::unit, name, 0, 0, size, limits.largest_error_um, "um",
                           "too much for micrometres: nm or counts?"});
+    else if (size > limits.largest_error_um)
+      findings.push_back({FindingRule::level, name, 0, 0, size, limits.largest_error_um, "um",
+                          "stands far from zero: a machine coordinate? TrainingPlan::error_reference = start takes it "
+                          "off"});
     else if (scale.range() > 0 && scale.range() < limits.smallest_range_um &&
              scale.resolution < limits.finest_step_um && largest_rise > limits.warmed_by_K)
       findings.push_back({FindingRule::unit, name, 0, 0, scale.range(), limits.smallest_range_um, "um",
