@@ -109,10 +109,12 @@ std::vector<Option> campaign_options() {
       {"--errors", "NAMES", "thermal errors (default: those of X, Y, Z that there are)", 0, true},
       {"--inputs", "NAMES", "known inputs (default: every other column of numbers; none: none of them)", 0, true},
       {"--time-column", "NAME",
-       "the clock, or 'none' (default: time_s, time_min, time_h, Time, time, t, or the column "
-       "of ISO 8601 date-times)",
-       0, false},
+       "the clock, or 'none' (default: time_s, time_min, time_h, Time, t, or the column of dates and times)", 0, false},
       {"--time-unit", "UNIT", "unit of a clock that names none: us, ms, s, min, h, d (default: min)", 0, false},
+      {"--time-format", "FORMAT",
+       "day-first, month-first (4/5/2026), unix-s, unix-ms (since 1970), or days (as spreadsheets count); default: "
+       "from the file, told, and an error where it leaves that open",
+       0, false},
       {"--units", "NAME=UNIT,…",
        "units of temperatures, errors and the clock, such as 'Z=mm,T*=degF'; they win over the file's (default: as "
        "written behind the names or below them; else degC, um)",
@@ -149,6 +151,14 @@ CsvOptions csv_options(const Arguments& arguments) {
   const auto unit = find_unit(options.time_unit);
   if (!options.time_unit.empty() && (!unit || unit->quantity != Quantity::time))
     throw UsageError("--time-unit is '" + options.time_unit + "'; allowed: " + std::string(unit_names(Quantity::time)));
+  const std::string format =
+      arguments.choice("--time-format", {"auto", "day-first", "month-first", "unix-s", "unix-ms", "days"}, "auto");
+  options.time_format = format == "day-first"     ? TimeFormat::day_first
+                        : format == "month-first" ? TimeFormat::month_first
+                        : format == "unix-s"      ? TimeFormat::unix_s
+                        : format == "unix-ms"     ? TimeFormat::unix_ms
+                        : format == "days"        ? TimeFormat::serial_days
+                                                  : TimeFormat::from_file;
   options.temperatures = arguments.list("--temperatures");
   options.errors = arguments.list("--errors");
   options.units = units(arguments);
@@ -241,7 +251,7 @@ void require_errors(const Campaign& campaign) {
 void require_time(const Campaign& campaign) {
   for (const Batch& batch : campaign)
     if (!batch.has_time())
-      throw Error(batch.source, "no clock", "time_s, time_min, time_h, Time, or a column of ISO 8601 date-times",
+      throw Error(batch.source, "no clock", "time_s, time_min, time_h, Time, or a column of dates and times",
                   "name it: --time-column NAME --time-unit UNIT");
 }
 

@@ -24,6 +24,7 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, decimal_mark, "--decimal"),
       THERMFIT_FLAG(CsvOptions, columns, "--columns"),
       THERMFIT_FLAG(CsvOptions, time_column, "--time-column"),
+      THERMFIT_FLAG(CsvOptions, time_format, "--time-format"),
       THERMFIT_FLAG(CsvOptions, time_unit, "--time-unit"),
       THERMFIT_FLAG(CsvOptions, temperatures, "--temperatures"),
       THERMFIT_FLAG(CsvOptions, errors, "--errors"),

@@ -16,12 +16,30 @@ namespace thermfit {
 
 namespace detail {
 
+inline std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
 /// The unit that a column's name says it is a time in: `s` for time_s, `?` for Time; empty when it is no time.
 inline std::string time_unit_in(const std::string& name) {
-  if (name == "Time" || name == "time" || name == "t") return "?";
-  if (name.rfind("time_", 0) != 0) return {};
+  const std::string lower = lower_case(name);
+  if (lower == "time" || name == "t") return "?";
+  if (lower.rfind("time_", 0) != 0) return {};
   const auto unit = find_unit(name.substr(5));
   return unit && unit->quantity == Quantity::time ? name.substr(5) : std::string();
+}
+
+/// Whether a name is one that clocks have among others, so that a unit or what it holds must say so too.
+inline bool may_be_clock(const std::string& name) {
+  const std::string lower = lower_case(name);
+  for (const char* word :
+       {"timestamp", "time stamp", "elapsed", "elapsed time", "elapsed_time", "date",    "datetime", "date time",
+        "date_time", "date/time",  "zeit",    "zeitstempel",  "uhrzeit",      "datum",   "temps",    "tiempo",
+        "tempo",     "hora",       "heure",   "时间",         "日期",         "x_value", "x value"})
+    if (lower == word) return true;
+  return lower.rfind("zeit ", 0) == 0 || lower.rfind("time ", 0) == 0;
 }
 
 struct CsvHeader {

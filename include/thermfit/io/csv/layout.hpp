@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,12 +23,13 @@ struct CsvRoles {
   std::vector<std::string> converted;     ///< "T1 from degF"
   std::vector<std::string> contradicted;  ///< "Z in mm, its title says um": CsvOptions::units against the file
   std::vector<std::string> nearly;        ///< "t1 (not T1)": an input whose name is nearly that of another role
+  std::string clock;                      ///< how the clock is read, where that is not plain
   bool assumed_minutes = false;           ///< nobody said what the clock counts
 };
 
 namespace detail {
 
-enum class CsvRole { skip, empty, time, date_time, batch, value };
+enum class CsvRole { skip, empty, time, date, date_time, batch, value };
 
 /// Where a column goes. `index` counts temperatures, then errors, then inputs.
 struct CsvSlot {
@@ -37,8 +39,18 @@ struct CsvSlot {
   Unit unit{Quantity::length, 0, 1, 1};
 };
 
+/// How the cells of a clock become seconds.
+struct CsvClock {
+  bool stamps = false;                   ///< dates or times of day, not numbers
+  bool iso = false;                      ///< all of ISO 8601
+  bool dated = false;                    ///< with a date in it or beside it; else it may pass midnight
+  bool from_first = false;               ///< counts from the first row of the batch
+  DateOrder order = DateOrder::unknown;  ///< of day and month
+};
+
 struct CsvLayout {
   CsvRoles roles;
+  CsvClock clock;
   std::vector<CsvSlot> slots;  ///< one a column of the file
   std::vector<CsvColumn> columns;
 };
@@ -290,21 +302,94 @@ class LayoutMaker {
 
   void assign_time() {
     if (options_.time_column == "none") return;
-    std::vector<std::size_t> found;
-    if (!options_.time_column.empty()) found.push_back(find(options_.time_column, "CsvOptions::time_column"));
-    for (std::size_t c = 0; c < header_.columns.size() && options_.time_column.empty(); ++c)
-      if (taken_[c].empty() && !time_unit_in(column(c).name).empty()) found.push_back(c);
-    for (std::size_t c = 0; c < header_.columns.size() && found.empty() && options_.time_column.empty(); ++c)
-      if (taken_[c].empty() && contents_[c].date_time && !contents_[c].numbers) found.push_back(c);
+    const std::vector<std::size_t> found =
+        options_.time_column.empty() ? clocks()
+                                     : std::vector<std::size_t>{find(options_.time_column, "CsvOptions::time_column")};
     if (found.size() > 1)
       throw problem(place_of(found[1]), {column(found[1]).name, " may be the time, and so may ", column(found[0]).name},
                     {"one clock"}, {"say CsvOptions::time_column = ", column(found[0]).name});
     if (found.empty()) return;
     const std::size_t c = found.front();
     layout_.roles.time = take(c, "the time");
+    if (contents_[c].stamps && !contents_[c].numbers)
+      read_stamps(c);
+    else
+      read_numbers(c);
+  }
+
+  /// Columns that may be the clock: by name; else by what they hold; else by a name that needs a unit to be sure.
+  std::vector<std::size_t> clocks() const {
+    std::vector<std::size_t> named, full, times, weak;
+    for (std::size_t c = 0; c < header_.columns.size(); ++c) {
+      if (!taken_[c].empty()) continue;
+      const ColumnContent& content = contents_[c];
+      const auto unit = find_unit(column(c).unit);
+      if (!time_unit_in(column(c).name).empty())
+        named.push_back(c);
+      else if (content.stamps && !content.numbers)
+        (content.has_date && content.has_time ? full : content.has_time ? times : weak).push_back(c);
+      else if (content.numbers && may_be_clock(column(c).name) &&
+               ((unit && unit->quantity == Quantity::time) || unix_scale(content.first) > 0))
+        weak.push_back(c);
+    }
+    if (!named.empty()) return named;
+    if (!full.empty()) return full;
+    if (!times.empty()) return times;
+    std::vector<std::size_t> sure;
+    for (const std::size_t c : weak)
+      if (!contents_[c].stamps) sure.push_back(c);
+    return sure;
+  }
+
+  void read_stamps(std::size_t c) {
+    ColumnContent& content = contents_[c];
+    CsvClock& clock = layout_.clock;
+    layout_.slots[c].role = CsvRole::date_time;
+    clock.stamps = clock.from_first = true;
+    clock.iso = content.is_iso;
+    clock.dated = content.has_date;
+    OrderEvidence order = content.order;
+    std::string with;
+    if (!content.has_date) {  // the date may stand in a column of its own
+      std::vector<std::size_t> dates;
+      for (std::size_t o = 0; o < contents_.size(); ++o)
+        if (taken_[o].empty() && contents_[o].stamps && !contents_[o].numbers && !contents_[o].has_time)
+          dates.push_back(o);
+      if (dates.size() == 1) {
+        with = take(dates[0], "the date");
+        layout_.slots[dates[0]].role = CsvRole::date;
+        order = contents_[dates[0]].order;
+        clock.dated = true;
+      }
+    }
+    clock.order = options_.time_format == TimeFormat::day_first     ? DateOrder::day_first
+                  : options_.time_format == TimeFormat::month_first ? DateOrder::month_first
+                                                                    : order.order();
+    if (clock.iso) return;
+    std::string how = !clock.dated   ? "a time of day or elapsed time"
+                      : with.empty() ? "dates and times"
+                                     : "times, with the dates of " + with;
+    if (order.open)
+      how += clock.order == DateOrder::day_first     ? ", day before month"
+             : clock.order == DateOrder::month_first ? ", month before day"
+                                                     : ", all of one date";
+    else if (clock.dated)
+      how += order.plain ? ", day before month" : ", year before month";
+    layout_.roles.clock = layout_.roles.time + " is read as " + how;
+  }
+
+  /// How many of a count of years beyond 1973 make a second, if it can be nothing else: 1, 1e3, 1e6; 0 where it can.
+  static double unix_scale(double first) {
+    return first >= 1e8 && first < 1e11    ? 1
+           : first >= 1e11 && first < 1e14 ? 1e3
+           : first >= 1e14 && first < 1e17 ? 1e6
+                                           : 0;
+  }
+
+  void read_numbers(std::size_t c) {
     CsvSlot& slot = layout_.slots[c];
-    slot.role = contents_[c].date_time && !contents_[c].numbers ? CsvRole::date_time : CsvRole::time;
-    if (slot.role == CsvRole::date_time) return;
+    slot.role = CsvRole::time;
+    const ColumnContent& content = contents_[c];
     const std::string by_name = time_unit_in(column(c).name);
     std::string unit = unit_of(c, Quantity::time);
     if (unit.empty() && by_name != "?") unit = by_name;
@@ -312,8 +397,27 @@ class LayoutMaker {
         !find_unit(unit)->is_same_as(*find_unit(options_.time_unit)))
       throw problem(place_of(c), {column(c).title, " says ", unit, ", CsvOptions::time_unit says ", options_.time_unit},
                     {"one unit for a column"});
-    layout_.roles.assumed_minutes = unit.empty() && options_.time_unit.empty();
-    if (unit.empty()) unit = options_.time_unit.empty() ? "min" : options_.time_unit;
+    if (unit.empty()) unit = options_.time_unit;
+    const TimeFormat format = options_.time_format;
+    const auto since = [&](const char* said, const std::string& how) {
+      layout_.clock.from_first = true;
+      layout_.roles.clock = layout_.roles.time + " is read as " + how;
+      unit = said;
+    };
+    const bool open = unit.empty() && format == TimeFormat::from_file;
+    const bool spreadsheet = content.first >= 36526 && content.first < 73051 && std::abs(content.step) < 0.02 &&
+                             content.step != 0 &&
+                             content.first + content.step != std::floor(content.first + content.step);
+    if (format == TimeFormat::unix_s || (open && unix_scale(content.first) == 1))
+      since("s", "seconds since 1970");
+    else if (format == TimeFormat::unix_ms || (open && unix_scale(content.first) == 1e3))
+      since("ms", "milliseconds since 1970");
+    else if (open && unix_scale(content.first) == 1e6)
+      since("us", "microseconds since 1970");
+    else if (format == TimeFormat::serial_days || (open && spreadsheet))
+      since("d", "days, as spreadsheets count them");
+    layout_.roles.assumed_minutes = unit.empty();
+    if (unit.empty()) unit = "min";
     set_unit(slot, c, Quantity::time, unit);
   }
 

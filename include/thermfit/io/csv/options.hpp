@@ -15,6 +15,16 @@ enum class MissingValues {
   keep    ///< NaN in the batch: for tools that look for faults
 };
 
+/// How a clock is written where its cells leave that open.
+enum class TimeFormat {
+  from_file,    ///< what the cells say; it is an error when they do not
+  day_first,    ///< 4/5/2026 is the 4th of May
+  month_first,  ///< 4/5/2026 is the 5th of April
+  unix_s,       ///< seconds since 1970
+  unix_ms,      ///< milliseconds since 1970
+  serial_days   ///< days, as spreadsheets count them
+};
+
 /// What unit columns are in, whatever their titles say.
 struct CsvUnit {
   std::string column;  ///< name or title, or a glob that finds columns in a unit of this kind only
@@ -28,6 +38,7 @@ struct CsvOptions {
   char decimal_mark = 0;                           ///< `.` or `,`; 0: from the file
   std::vector<std::string> columns;                ///< names for a file that has no header line
   std::string time_column;                         ///< empty: by name or ISO 8601 content; "none": no time
+  TimeFormat time_format = TimeFormat::from_file;  ///< of the clock
   std::string time_unit;                           ///< for a time column that does not name its unit; empty: min
   std::vector<std::string> temperatures;           ///< empty: `T` and digits
   std::vector<std::string> errors;                 ///< empty: those of `X`, `Y`, `Z` that there are
@@ -40,6 +51,7 @@ struct CsvOptions {
   std::vector<std::string> join;                 ///< globs: the files that one of them names are parts of one batch
   MissingValues missing = MissingValues::error;  ///< what to do with a cell that has no value
   bool increasing_time = true;                   ///< false: time that repeats or goes back is left to the caller
+  bool newest_first = false;                     ///< time may decrease instead; for who holds all rows of a batch
   bool plain = false;           ///< every column of numbers is an input, whatever its name: for read_table
   std::size_t max_errors = 20;  ///< problems told of in one pass
   std::size_t max_line_bytes = std::size_t{1} << 20;  ///< limits against files that are not what they seem

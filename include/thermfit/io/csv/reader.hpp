@@ -55,7 +55,26 @@ inline std::string stem(const std::string& path) {
   return name;
 }
 
-inline void read_file(const std::string& path, const CsvOptions& options, Problems& problems, CsvReading& reading) {
+/// Turns rows that came newest first round, `met` of them with those left out, and counts from the oldest where the
+/// newest was 0.
+inline void turn_round(GrowingBatch& rows, std::size_t width, Index met) {
+  const std::size_t count = rows.time_s.size();
+  std::reverse(rows.numbers.begin(), rows.numbers.end());
+  for (Index& number : rows.numbers) number = met - number + 1;
+  std::reverse(rows.time_s.begin(), rows.time_s.end());
+  if (count > 0 && rows.time_s.back() == 0) {
+    const double first = rows.time_s.front();
+    for (double& time : rows.time_s) time -= first;
+    rows.begins_s += first;
+  }
+  for (std::size_t row = 0; row < count / 2; ++row)
+    std::swap_ranges(rows.values.begin() + static_cast<std::ptrdiff_t>(row * width),
+                     rows.values.begin() + static_cast<std::ptrdiff_t>((row + 1) * width),
+                     rows.values.begin() + static_cast<std::ptrdiff_t>((count - 1 - row) * width));
+}
+
+inline void read_file(const std::string& path, CsvOptions options, Problems& problems, CsvReading& reading) {
+  options.newest_first = true;
   CsvRowReader reader(path, options, problems);
   const CsvRoles& roles = reader.file().roles;
   if (roles.temperatures.empty()) {
@@ -85,7 +104,16 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     current->time_s.push_back(row.time_s);
     current->values.insert(current->values.end(), row.temperatures.data(), row.temperatures.data() + width);
   }
+  bool turned = false;
   for (GrowingBatch& rows : batches) {
+    if (reader.newest_first(rows.key)) {
+      if (rows.held_values > 0)
+        problems.add(problem(reader.file().path, {"comes newest row first, where the last value would be a later one"},
+                             {"CsvOptions::missing = drop"}));
+      turn_round(rows, width, reader.rows_met(rows.key));
+      rows.first_degC = reader.first_degC(rows.key);
+      turned = true;
+    }
     Batch batch;
     batch.name = roles.batch.empty() ? stem(reader.file().path) : rows.key;
     batch.source = reader.file().path;
@@ -107,6 +135,7 @@ inline void read_file(const std::string& path, const CsvOptions& options, Proble
     rows = {};
   }
   reading.files.push_back(reader.file());
+  reading.files.back().newest_first = turned;
 }
 
 /// Brings the channels of a batch into the order of the first one. Throws when a name is missing or surplus.
@@ -267,6 +296,8 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
     if (!file.dialect.is_plain()) add(file, file.dialect.description());
     if (file.roles.assumed_minutes)
       add(file, file.roles.time + " names no unit: minutes (CsvOptions::time_unit tells another)");
+    if (!file.roles.clock.empty()) add(file, file.roles.clock + " (CsvOptions::time_format = FORMAT tells another)");
+    if (file.newest_first) add(file, "newest row first: turned round");
     if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
     if (!file.roles.contradicted.empty()) add(file, "as CsvOptions::units says: " + name_list(file.roles.contradicted));
     if (!file.roles.nearly.empty()) add(file, "taken as inputs: " + name_list(file.roles.nearly));

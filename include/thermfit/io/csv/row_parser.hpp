@@ -21,6 +21,7 @@ struct RowCells {
   std::vector<double> values;  ///< temperatures, errors, inputs
   double time_s = missing_value;
   DateTime date_time{};
+  std::int64_t date_s = 0;  ///< of a date in a column of its own, since 1970
   std::string_view batch;
   std::vector<MissingCell> missing;
 };
@@ -85,7 +86,7 @@ class RowParser {
         if (text.find('"') != std::string_view::npos) return false;
         if (slot.role == CsvRole::empty && !text.empty()) return false;
         if (slot.role == CsvRole::batch) cells_.batch = text;
-        if (slot.role == CsvRole::date_time &&
+        if ((slot.role == CsvRole::date_time || slot.role == CsvRole::date) &&
             !take_date_time(text, f, static_cast<std::size_t>(begin - line.data()) + 1))
           return false;
       }
@@ -129,8 +130,14 @@ class RowParser {
                                 {"give the last column a name"}));
           good = false;
           break;
+        case CsvRole::date:
         case CsvRole::date_time:
           if (take_date_time(field.text, f, field.column)) break;
+          if (layout_.clock.dated && !layout_.clock.iso) {
+            problems_.add(bad_stamp(field, f));
+            good = false;
+            break;
+          }
           problems_.add(
               problem(here(field.column), {name_of(f), " is ", shown(field.text)},
                       {"an ISO 8601 date-time such as 2024-05-31T08:00:00, with a zone in all rows or in none"}));
@@ -185,7 +192,12 @@ class RowParser {
   }
 
   bool take_date_time(std::string_view text, std::size_t field, std::size_t column) {
-    if (const auto parsed = parse_date_time(text)) {
+    const auto parsed = layout_.clock.iso ? parse_date_time(text) : dated(text);
+    if (parsed) {
+      if (layout_.slots[field].role == CsvRole::date) {
+        cells_.date_s = parsed->seconds;
+        return true;
+      }
       if (zone_known_ && parsed->has_zone != has_zone_) return false;
       zone_known_ = true;
       has_zone_ = parsed->has_zone;
@@ -195,6 +207,33 @@ class RowParser {
     if (!is_missing(text)) return false;
     cells_.missing.push_back({field, column});
     return true;
+  }
+
+  /// A stamp as the layout reads it. While the order of day and month is open only one date may be met: differences
+  /// are then the same in both.
+  std::optional<DateTime> dated(std::string_view text) {
+    const auto stamp = parse_stamp(text);
+    if (!stamp) return std::nullopt;
+    DateOrder order = layout_.clock.order;
+    if (stamp->has_date && order == DateOrder::unknown && !stamp->year_first && !stamp->order_is_plain) {
+      if (seen_date_.year < 0) seen_date_ = {stamp->year, stamp->first, stamp->second};
+      if (seen_date_.year != stamp->year || seen_date_.first != stamp->first || seen_date_.second != stamp->second)
+        return std::nullopt;
+      order = stamp->first > 12 ? DateOrder::day_first : DateOrder::month_first;
+    }
+    return instant(*stamp, order);
+  }
+
+  Error bad_stamp(const CsvField& field, std::size_t f) const {
+    const std::string place = here(field.column);
+    const auto stamp = parse_stamp(field.text);
+    if (stamp && stamp->has_date && layout_.clock.order == DateOrder::unknown && !stamp->year_first &&
+        !stamp->order_is_plain && stamp->first <= 12 && stamp->second <= 12)
+      return problem(place, {name_of(f), " is ", shown(field.text), ", day or month first: nothing in the file tells"},
+                     {"CsvOptions::time_format = day-first or CsvOptions::time_format = month-first"}, {"say which"});
+    return problem(place, {name_of(f), " is ", shown(field.text)},
+                   {"dates and times written as in the rows before, such as 2024-05-31 08:00:00, 31.05.2024 08:00:00, "
+                    "5/31/2024 8:00:00 PM"});
   }
 
   void store(const CsvSlot& slot, double value) {
@@ -210,6 +249,9 @@ class RowParser {
   std::size_t line_number_ = 0;
   std::string batch_text_;
   std::vector<CsvField> fields_;
+  struct {
+    int year = -1, first = 0, second = 0;
+  } seen_date_;  ///< while the order of day and month is open
   bool zone_known_ = false, has_zone_ = false, all_rows_ragged_ = false;
 };
 

@@ -37,6 +37,7 @@ struct CsvFile {
   CsvRoles roles;                ///< of its columns
   std::size_t rows = 0;          ///< rows handed out
   std::size_t missing = 0;       ///< cells without a value, in columns that are used
+  bool newest_first = false;     ///< the rows of a batch were turned round
   std::size_t dropped_rows = 0;  ///< rows left out for a missing value: MissingValues::drop or error
   std::string first_missing;     ///< `file:line:column (T3)`
 };
@@ -59,6 +60,7 @@ class CsvRowReader {
         detail::LayoutMaker(header, detail::column_contents(evidence, header, file_.dialect), options_, file_.path)
             .make();
     file_.roles = layout_.roles;
+    may_decrease_ = options_.newest_first && evidence.lines.size() >= header.content_lines + 3;  // two may be a mistake
     parser_.start(evidence, header);
     std::string_view line;
     for (std::size_t taken = 0; taken < header.content_lines && lines_.next(line);) taken += detail::is_content(line);
@@ -73,6 +75,16 @@ class CsvRowReader {
     const auto found = states_.find(batch);
     return found == states_.end() ? 0 : found->second.dropped_rows;
   }
+
+  /// Whether the rows of a batch come newest first. Does not allocate.
+  bool newest_first(const std::string& batch = {}) const {
+    const auto found = states_.find(batch);
+    return found != states_.end() && found->second.decreasing && !found->second.to_and_fro;
+  }
+
+  /// The rows of a batch met so far, also those left out, and the temperatures of the oldest. Does not allocate.
+  Index rows_met(const std::string& batch) const { return states_.at(batch).rows; }
+  const std::vector<double>& first_degC(const std::string& batch) const { return states_.at(batch).first_degC; }
 
   /// The next row that is good; false at the end, after which missing values and an absence of rows are told.
   bool next(CsvRow& row) {
@@ -97,8 +109,7 @@ class CsvRowReader {
                         options_.missing == MissingValues::hold ? static_cast<Index>(cells_.missing.size()) : 0,
                         state_->rows,
                         {state_->first_degC.data(), count(roles.temperatures)},
-                        state_->has_origin ? static_cast<double>(state_->origin.seconds) + state_->origin.fraction
-                                           : detail::missing_value};
+                        begins_s()};
       return true;
     }
     finish();
@@ -113,6 +124,10 @@ class CsvRowReader {
     double time_s = -HUGE_VAL;
     bool has_origin = false;
     DateTime origin{};
+    double origin_s = 0;
+    bool decreasing = false, to_and_fro = false;  ///< newest row first; not all rows the same way
+    Index rows_timed = 0;
+    std::int64_t days = 0, last_s = 0;  ///< midnights passed, and the row before, for times of day
     std::vector<double> held;
     std::vector<double> first_degC;
     Index rows = 0;
@@ -139,9 +154,18 @@ class CsvRowReader {
   void remember_first() {
     const auto temperatures = static_cast<std::ptrdiff_t>(layout_.roles.temperatures.size());
     if (++state_->rows == 1) state_->first_degC.assign(cells_.values.begin(), cells_.values.begin() + temperatures);
-    if (state_->has_origin || !is_date_time() || lacks_time()) return;
+    if (state_->decreasing) state_->first_degC.assign(cells_.values.begin(), cells_.values.begin() + temperatures);
+    if (state_->has_origin || !layout_.clock.from_first || lacks_time()) return;
     state_->origin = cells_.date_time;
+    state_->origin.seconds += cells_.date_s;
+    state_->origin_s = cells_.time_s;
     state_->has_origin = true;
+  }
+
+  /// Time 0 of the batch since 1970, where stamps tell dates.
+  double begins_s() const {
+    if (!state_->has_origin || !layout_.clock.stamps || !layout_.clock.dated) return detail::missing_value;
+    return static_cast<double>(state_->origin.seconds) + state_->origin.fraction;
   }
 
   bool lacks_time() const {
@@ -191,25 +215,43 @@ class CsvRowReader {
   bool check_time() {
     if (layout_.roles.time.empty()) return remember();
     if (lacks_time()) return remember();
-    if (is_date_time()) {
-      cells_.time_s = static_cast<double>(cells_.date_time.seconds - state_->origin.seconds) +
-                      (cells_.date_time.fraction - state_->origin.fraction);
-    }
+    if (layout_.clock.from_first) count_from_first();
     const double before = state_->time_s;
     state_->time_s = cells_.time_s;
-    if (cells_.time_s > before || !options_.increasing_time) return remember();
+    if (may_decrease_ && state_->rows_timed == 1 && cells_.time_s < before) state_->decreasing = true;
+    ++state_->rows_timed;
+    const bool onward =
+        state_->rows_timed == 1 || (state_->decreasing ? cells_.time_s < before : cells_.time_s > before);
+    state_->to_and_fro = state_->to_and_fro || !onward;
+    if (onward || !options_.increasing_time) return remember();
     problems_.add(detail::problem(
         here(),
-        {layout_.roles.time, (cells_.time_s == before ? " stands still at " : " goes back to "),
+        {layout_.roles.time,
+         (cells_.time_s == before ? " stands still at "
+          : state_->decreasing    ? " decreased, and goes up to "
+                                  : " goes back to "),
          exact_text(cells_.time_s), " s" + (cells_.time_s == before ? "" : " from " + exact_text(before) + " s")},
         {"time that increases from row to row"},
         {"split runs with CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"}));
     return false;
   }
 
-  bool is_date_time() const {
-    return std::any_of(layout_.slots.begin(), layout_.slots.end(),
-                       [](const auto& slot) { return slot.role == Role::date_time; });
+  /// Seconds since the first row of the batch, from stamps or from numbers that count from long ago. A time of day that
+  /// goes back by more than half a day has passed midnight.
+  void count_from_first() {
+    State& state = *state_;
+    if (!layout_.clock.stamps) {
+      cells_.time_s -= state.origin_s;
+      return;
+    }
+    DateTime now = cells_.date_time;
+    now.seconds += cells_.date_s;
+    if (!layout_.clock.dated) {
+      now.seconds += state.days * 86400;
+      if (now.seconds + 43200 < state.last_s) ++state.days, now.seconds += 86400;
+      state.last_s = now.seconds;
+    }
+    cells_.time_s = static_cast<double>(now.seconds - state.origin.seconds) + (now.fraction - state.origin.fraction);
   }
 
   bool remember() {
@@ -244,6 +286,7 @@ class CsvRowReader {
   std::map<std::string, State> states_;
   State* state_ = nullptr;
   std::size_t seen_rows_ = 0;
+  bool may_decrease_ = false;
 };
 
 /// Hands each row of a file to `row`, in constant memory; `begin` hears first what the columns mean. Rows with problems
