@@ -125,6 +125,12 @@ std::vector<Option> campaign_options() {
        true},
       {"--missing", "POLICY",
        "missing values: error, drop (leave the row out), hold (repeat the last) (default: error)", 0, false},
+      {"--missing-marks", "MARKS",
+       "cells without a reading, as 'ERR7,-999.9', besides empty, NA, NaN, OL, ---, #NV, Overflow, Burnout and the "
+       "like",
+       0, true},
+      {"--header-line", "N",
+       "line of the file that holds the names (default: the first, or the one above the rows, told)", 0, false},
       {"--delimiter", "MARK", "comma, semicolon, tab or bar (default: from the file)", 0, false},
       {"--decimal", "MARK", "point or comma (default: from the file)", 0, false},
       {"--columns", "NAMES", "names of the columns of files without a header line", 0, true},
@@ -146,6 +152,8 @@ CsvOptions csv_options(const Arguments& arguments) {
   options.separator = separator(arguments);
   options.decimal_mark = decimal_mark(arguments);
   options.columns = arguments.list("--columns");
+  options.missing_marks = arguments.list("--missing-marks");
+  options.header_line = static_cast<std::size_t>(arguments.integer("--header-line", 1, 100000).value_or(0));
   options.time_column = arguments.value_or("--time-column", "");
   options.time_unit = arguments.value_or("--time-unit", "");
   const auto unit = find_unit(options.time_unit);

@@ -23,6 +23,8 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, separator, "--delimiter"),
       THERMFIT_FLAG(CsvOptions, decimal_mark, "--decimal"),
       THERMFIT_FLAG(CsvOptions, columns, "--columns"),
+      THERMFIT_FLAG(CsvOptions, header_line, "--header-line"),
+      THERMFIT_FLAG(CsvOptions, missing_marks, "--missing-marks"),
       THERMFIT_FLAG(CsvOptions, time_column, "--time-column"),
       THERMFIT_FLAG(CsvOptions, time_format, "--time-format"),
       THERMFIT_FLAG(CsvOptions, time_unit, "--time-unit"),

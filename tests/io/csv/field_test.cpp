@@ -53,6 +53,7 @@ TEST_CASE("fields are split at separators outside quotes, without the blanks aro
 }
 
 TEST_CASE("missing values are known in any case, and nothing else is taken for one", "[io]") {
-  for (const char* text : {"", "NA", "na", "N/A", "NaN", "nan", "NULL", "null"}) CHECK(is_missing(text));
-  for (const char* text : {"-", "nan(1)", "none", "0", "nil", "NAN "}) CHECK_FALSE(is_missing(text));
+  for (const char* text : {"", "NA", "na", "N/A", "NaN", "nan", "NULL", "null", "-", "OL", "#NV", "Overflow", "none"})
+    CHECK(is_missing(text));
+  for (const char* text : {"-1", "nan(1)", "0", "nil", "NAN ", "on", "off", "*1", "old"}) CHECK_FALSE(is_missing(text));
 }

@@ -15,22 +15,25 @@ namespace thermfit {
 
 /// How a file spells its table, as found or as told.
 struct CsvDialect {
-  char separator = ',';     ///< `,` `;` tab or `|`
-  char decimal_mark = '.';  ///< `.` or `,`
-  bool bom = false,         ///< a byte order mark comes first
-      crlf = false,         ///< the first line ends in CR LF
-      returns = false,      ///< carriage returns stand inside lines, and count as blanks
-      compressed = false,   ///< it is gzip
-      unit_row = false;     ///< the line below the names holds their units
+  char separator = ',';                    ///< `,` `;` tab or `|`
+  char decimal_mark = '.';                 ///< `.` or `,`
+  bool bom = false,                        ///< a byte order mark comes first
+      crlf = false,                        ///< the first line ends in CR LF
+      returns = false,                     ///< carriage returns stand inside lines, and count as blanks
+      compressed = false,                  ///< it is gzip
+      unit_row = false;                    ///< the line below or above the names holds their units
+  std::vector<std::string> missing_marks;  ///< CsvOptions::missing_marks
+  std::size_t header_line = 0;             ///< of the names in the file where lines stand before it, else 0
 
   /// Whether commas separate, points are decimal marks, and there is nothing to be told. Does not allocate.
-  bool is_plain() const { return separator == ',' && decimal_mark == '.' && !unit_row && !returns; }
+  bool is_plain() const { return separator == ',' && decimal_mark == '.' && !unit_row && !returns && header_line == 0; }
 
   /// "semicolon-separated, decimal comma, unit row".
   std::string description() const {
     std::string text = separator == ',' ? "comma" : separator == ';' ? "semicolon" : separator == '|' ? "bar" : "tab";
     text += decimal_mark == ',' ? "-separated, decimal comma" : "-separated, decimal point";
     if (unit_row) text += ", unit row";
+    if (header_line > 0) text += ", names in line " + std::to_string(header_line) + ", those above left out";
     if (bom) text += ", byte order mark";
     if (crlf) text += ", CRLF";
     if (returns) text += ", carriage returns inside lines taken as blanks";
@@ -206,6 +209,7 @@ inline char detect_decimal_mark(const CsvEvidence& evidence, char separator, boo
 inline CsvDialect detect_dialect(const detail::CsvLines& lines, const detail::CsvEvidence& evidence,
                                  const CsvOptions& options) {
   CsvDialect dialect;
+  dialect.missing_marks = options.missing_marks;
   dialect.bom = lines.has_bom();
   dialect.crlf = lines.has_crlf();
   dialect.compressed = lines.compressed();

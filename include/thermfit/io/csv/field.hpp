@@ -84,15 +84,26 @@ inline std::optional<CsvFieldError> split_line(std::string_view line, char separ
   }
 }
 
-/// Empty, `NA`, `N/A`, `NaN` or `null`, in any case.
+/// Empty, or what files and instruments write without a reading, in any case: `NA`, `NaN`, `null`, an open or
+/// overloaded input (`OL`, `Overflow`, `Burnout`), a spreadsheet's error (`#NV`), a mark (`---`, `*`, `?`).
 inline bool is_missing(std::string_view text) {
   if (text.empty()) return true;
-  if (text.size() > 4) return false;
-  char lower[4] = {};
+  if (text.size() > 10) return false;
+  char lower[10] = {};
   for (std::size_t i = 0; i < text.size(); ++i)
     lower[i] = text[i] >= 'A' && text[i] <= 'Z' ? static_cast<char>(text[i] - 'A' + 'a') : text[i];
   const std::string_view word(lower, text.size());
-  return word == "na" || word == "n/a" || word == "nan" || word == "null";
+  if (word.find_first_not_of('-') == std::string_view::npos || word.find_first_not_of('*') == std::string_view::npos ||
+      word.find_first_not_of('?') == std::string_view::npos)
+    return true;
+  for (const std::string_view mark :
+       {"na",      "n/a",       "n.a.",       "nan",     "-nan",    "null",    "none",     "ol",       "o.l",
+        "o.l.",    "+ol",       "-ol",        "over",    "+over",   "-over",   "overflow", "overload", "overrange",
+        "under",   "underflow", "underrange", "burnout", "open",    "open tc", "opentc",   "#nv",      "#n/a",
+        "#na",     "#wert!",    "#value!",    "#div/0!", "#bezug!", "#ref!",   "#num!",    "#zahl!",   "1.#qnan",
+        "-1.#ind", "1.#ind",    "invalid",    "bad",     "err",     "error",   "fault"})
+    if (word == mark) return true;
+  return false;
 }
 
 /// A whole field as a number, with `mark` for the decimal point.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/io/csv/dialect.hpp"
+#include "thermfit/io/csv/stamp.hpp"
 #include "thermfit/io/csv/title.hpp"
 #include "thermfit/io/problems.hpp"
 #include "thermfit/io/units.hpp"
@@ -110,6 +111,14 @@ inline bool rows_end_in_separator(const CsvEvidence& evidence, char separator) {
   return true;
 }
 
+/// Whether every row has exactly one field less than there are names.
+inline bool lacks_last_field(const CsvEvidence& evidence, char separator, std::size_t names) {
+  std::vector<CsvField> fields;
+  for (std::size_t i = 1; i < evidence.lines.size(); ++i)
+    if (split_line(evidence.lines[i].text, separator, fields) || fields.size() + 1 != names) return false;
+  return evidence.lines.size() > 1;
+}
+
 inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, const std::string& name) {
   CsvHeader header;
   const auto& first = evidence.lines.front();
@@ -122,12 +131,30 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
       }))
     throw problem(place(name, first.number), {"numbers where the names of the columns should be"}, {"a header line"},
                   {"add one, or name the columns: CsvOptions::columns = NAME,NAME,…"});
+  if (header.columns.size() > 2 && header.columns.back().title == "Comment" && lacks_last_field(evidence, dialect.separator, header.columns.size()))
+    header.columns.pop_back();  // LabVIEW names it also where no row has one
   header.empty_last_column = header.columns.size() > 1 && header.columns.back().title.empty() &&
                              rows_end_in_separator(evidence, dialect.separator);
   if (header.empty_last_column) header.columns.pop_back();
 
   std::vector<CsvField> fields;
   std::vector<std::string> units;
+  if (!split_line(first.text, dialect.separator, fields) && is_unit_row(fields, units) && evidence.lines.size() > 2 &&
+      std::all_of(header.columns.begin(), header.columns.end(),
+                  [](const CsvColumn& column) { return column.title.empty() || find_unit(column.title); }) &&
+      !split_line(evidence.lines[1].text, dialect.separator, fields) && fields.size() == units.size() &&
+      std::none_of(fields.begin(), fields.end(), [&](const CsvField& field) {
+        return field.text.empty() || parse_field(field.text, '.') || parse_field(field.text, ',') ||
+               parse_stamp(field.text);
+      })) {  // units above the names
+    dialect.unit_row = true;
+    header.line = evidence.lines[1].number;
+    header.content_lines = 2;
+    header.columns = columns_in(evidence.lines[1].text, header.line, dialect.separator, name);
+    for (std::size_t c = 0; c < header.columns.size(); ++c)
+      if (header.columns[c].unit.empty()) header.columns[c].unit = units[c];
+    return header;
+  }
   if (evidence.lines.size() > 1 && !split_line(evidence.lines[1].text, dialect.separator, fields) &&
       fields.size() == header.columns.size() + header.empty_last_column && is_unit_row(fields, units)) {
     dialect.unit_row = true;
@@ -140,6 +167,14 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
                       {"unit ", units[c], " below a name that says ", unit}, {"one unit for a column"});
       if (unit.empty()) unit = units[c];
     }
+    // A third line of words, as of channel numbers, below names and units.
+    if (evidence.lines.size() > 3 && !split_line(evidence.lines[2].text, dialect.separator, fields) &&
+        fields.size() == header.columns.size() + header.empty_last_column &&
+        std::none_of(fields.begin(), fields.end(), [&](const CsvField& field) {
+          return is_missing(field.text) || parse_field(field.text, '.') || parse_field(field.text, ',') ||
+                 parse_stamp(field.text);
+        }))
+      header.content_lines = 3;
   }
   return header;
 }

@@ -37,6 +37,7 @@ class RowParser {
   void start(const CsvEvidence& evidence, const CsvHeader& header) {
     cells_.values.resize(layout_.roles.temperatures.size() + layout_.roles.errors.size() + layout_.roles.inputs.size());
     all_rows_ragged_ = no_row_fits(evidence, header);
+    if (header.line > 0 && !evidence.lines.empty()) names_ = std::string(trim(evidence.lines.front().text));
   }
 
   /// False, and what is wrong with it has gone to the problems, when a line cannot be used.
@@ -45,8 +46,14 @@ class RowParser {
     cells_.missing.clear();
     cells_.batch = {};
     cells_.time_s = missing_value;
-    return parse_plain(line) || parse_carefully(line);
+    no_row_ = false;
+    if (parse_plain(line)) return true;
+    no_row_ = is_no_row(line);
+    return !no_row_ && parse_carefully(line);
   }
+
+  /// Whether the line that parse() refused last is none of the table's rows, for sure.
+  bool was_no_row() const { return no_row_; }
 
   /// Of the line that parse() took last; the batch is a view into the line.
   RowCells& cells() { return cells_; }
@@ -59,11 +66,33 @@ class RowParser {
     return evidence.lines.size() > header.content_lines + 1;
   }
 
+  /// The line of names again, a word that ends a file, a lost sample of a sampler, or a row that begins with the name
+  /// of a sum where a number or a stamp belongs.
+  bool is_no_row(std::string_view line) {
+    const std::string_view text = trim(line);
+    if (!names_.empty() && text == names_) return true;
+    if (text.empty()) return false;
+    if (text.find(dialect_.separator) == std::string_view::npos ||
+        text.find_first_not_of(",;\t ", 1) == std::string_view::npos)
+      for (const char* word : {"eof", "end", "end of file", "end of data", "overrun"})
+        if (layout_.slots.size() > 1 && lower_case(std::string(text)) == word) return true;
+    if (split_line(line, dialect_.separator, fields_) || fields_.empty()) return false;
+    const CsvRole role = layout_.slots.front().role;
+    if (role != CsvRole::time && role != CsvRole::date && role != CsvRole::date_time && role != CsvRole::value)
+      return false;
+    const std::string first = lower_case(std::string(fields_.front().text));
+    for (const char* word : {"max", "min", "mean", "avg", "average", "sum", "std", "stdev", "std dev", "median",
+                             "maximum", "minimum", "total", "count", "range", "mittelwert", "summe", "anzahl"})
+      if (first == word || first == std::string(word) + ':') return true;
+    return false;
+  }
+
   std::string here(std::size_t column = 0) const { return place(path_, line_number_, column); }
   const std::string& name_of(std::size_t field) const { return layout_.columns[field].name; }
 
   /// The fast way: plain numbers, no quotes. False when anything is out of the ordinary; then parse_carefully decides.
   bool parse_plain(std::string_view line) {
+    if (!dialect_.missing_marks.empty()) return false;  // a mark may look like a number
     const char separator = dialect_.separator, mark = dialect_.decimal_mark;
     const char* at = line.data();
     const char* const end = at + line.size();
@@ -180,12 +209,18 @@ class RowParser {
                           : "delete the surplus, or name the column"});
   }
 
+  bool is_marked(std::string_view text) const {
+    return std::find(dialect_.missing_marks.begin(), dialect_.missing_marks.end(), text) !=
+           dialect_.missing_marks.end();
+  }
+
   bool take_number(std::string_view text, std::size_t field, std::size_t column, double& value) {
-    if (const auto number = parse_field(text, dialect_.decimal_mark)) {
+    const bool marked = !dialect_.missing_marks.empty() && is_marked(text);
+    if (const auto number = marked ? std::nullopt : parse_field(text, dialect_.decimal_mark)) {
       value = *number;
       return true;
     }
-    if (!is_missing(text)) return false;
+    if (!is_missing(text) && !is_marked(text)) return false;
     value = missing_value;
     cells_.missing.push_back({field, column});
     return true;
@@ -204,7 +239,7 @@ class RowParser {
       cells_.date_time = *parsed;
       return true;
     }
-    if (!is_missing(text)) return false;
+    if (!is_missing(text) && !is_marked(text)) return false;
     cells_.missing.push_back({field, column});
     return true;
   }
@@ -247,6 +282,8 @@ class RowParser {
   Problems& problems_;
   RowCells cells_;
   std::size_t line_number_ = 0;
+  std::string names_;  ///< the line of names
+  bool no_row_ = false;
   std::string batch_text_;
   std::vector<CsvField> fields_;
   struct {

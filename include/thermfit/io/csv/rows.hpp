@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "thermfit/compiled.hpp"
+#include "thermfit/io/csv/preamble.hpp"
 #include "thermfit/io/csv/row_parser.hpp"
 #include "thermfit/types.hpp"
 
@@ -32,14 +33,16 @@ struct CsvRow {
 
 /// What was met while reading one file.
 struct CsvFile {
-  std::string path;              ///< `stdin` for standard input
-  CsvDialect dialect;            ///< as found or as told
-  CsvRoles roles;                ///< of its columns
-  std::size_t rows = 0;          ///< rows handed out
-  std::size_t missing = 0;       ///< cells without a value, in columns that are used
-  bool newest_first = false;     ///< the rows of a batch were turned round
-  std::size_t dropped_rows = 0;  ///< rows left out for a missing value: MissingValues::drop or error
-  std::string first_missing;     ///< `file:line:column (T3)`
+  std::string path;                ///< `stdin` for standard input
+  CsvDialect dialect;              ///< as found or as told
+  CsvRoles roles;                  ///< of its columns
+  std::size_t rows = 0;            ///< rows handed out
+  std::size_t missing = 0;         ///< cells without a value, in columns that are used
+  bool newest_first = false;       ///< the rows of a batch were turned round
+  std::size_t dropped_rows = 0;    ///< rows left out for a missing value: MissingValues::drop or error
+  std::size_t left_out_lines = 0;  ///< that are no rows for sure: the names again, sums and means at the end, EOF
+  std::string first_left_out;      ///< `file:line ('Max,28,24')`
+  std::string first_missing;       ///< `file:line:column (T3)`
 };
 
 /// Reads a file row by row in constant memory. Problems of rows go to `problems`; such rows are left out.
@@ -52,8 +55,9 @@ class CsvRowReader {
         lines_(path, options.max_line_bytes),
         parser_(layout_, file_.dialect, file_.path, problems),
         cells_(parser_.cells()) {
-    const detail::CsvEvidence evidence(lines_.head());
+    detail::CsvEvidence evidence(lines_.head());
     file_.path = lines_.name();
+    const std::size_t before = skip_to_names(evidence);
     file_.dialect = detect_dialect(lines_, evidence, options_);
     const detail::CsvHeader header = detail::read_header(evidence, file_.dialect, options_, file_.path);
     layout_ =
@@ -62,8 +66,10 @@ class CsvRowReader {
     file_.roles = layout_.roles;
     may_decrease_ = options_.newest_first && evidence.lines.size() >= header.content_lines + 3;  // two may be a mistake
     parser_.start(evidence, header);
+    if (before > 0) file_.dialect.header_line = header.line;
     std::string_view line;
-    for (std::size_t taken = 0; taken < header.content_lines && lines_.next(line);) taken += detail::is_content(line);
+    for (std::size_t taken = 0; taken < before + header.content_lines && lines_.next(line);)
+      taken += detail::is_content(line);
   }
 
   /// What was met so far: dialect and roles from the start, counts up to the row that next() gave last. Does not
@@ -92,7 +98,12 @@ class CsvRowReader {
     while (lines_.next(line)) {
       if (!detail::is_content(line)) continue;
       ++seen_rows_;
-      if (!parser_.parse(line, lines_.line_number())) continue;
+      if (!parser_.parse(line, lines_.line_number())) {
+        if (!parser_.was_no_row()) continue;
+        --seen_rows_;
+        if (file_.left_out_lines++ == 0) file_.first_left_out = here() + " (" + detail::shown(line) + ")";
+        continue;
+      }
       if (!enter_state()) continue;
       remember_first();
       if (!settle_missing() || !check_time()) continue;
@@ -118,6 +129,31 @@ class CsvRowReader {
 
  private:
   using Role = detail::CsvRole;
+
+  /// Takes lines that stand before the names out of the evidence: what the options say, `sep=`, a preamble. How many.
+  std::size_t skip_to_names(detail::CsvEvidence& evidence) {
+    auto& lines = evidence.lines;
+    const std::size_t all = lines.size();
+    if (!lines.empty() && lines.front().number == 1)
+      if (const char told = detail::told_separator(lines.front().text)) {
+        if (options_.separator == 0) options_.separator = told;
+        lines.erase(lines.begin());
+      }
+    if (options_.header_line > 0) {
+      const auto names = std::find_if(lines.begin(), lines.end(),
+                                      [&](const auto& line) { return line.number == options_.header_line; });
+      if (names == lines.end())
+        throw detail::problem(file_.path,
+                              {"CsvOptions::header_line = ", std::to_string(options_.header_line),
+                               " is empty, a comment, or not among the first lines"},
+                              {"the number of the line that holds the names, from 1"});
+      lines.erase(lines.begin(), names);
+    } else if (options_.columns.empty()) {
+      const std::size_t before = detail::lines_before_names(evidence, options_.separator);
+      lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(before));
+    }
+    return all - lines.size();
+  }
 
   /// What is remembered of a batch from row to row.
   struct State {
