@@ -72,9 +72,15 @@ std::vector<std::string> files_like(const std::string& pattern) {
 
 char separator(const Arguments& arguments) {
   const std::string given = arguments.value_or("--delimiter", "auto");
-  if (given.size() == 1 && given.find_first_of(",;\t|") == 0) return given.front();
-  const std::string word = arguments.choice("--delimiter", {"auto", "comma", "semicolon", "tab", "bar"}, "auto");
-  return word == "comma" ? ',' : word == "semicolon" ? ';' : word == "tab" ? '\t' : word == "bar" ? '|' : '\0';
+  if (given.size() == 1 && given.find_first_of(",;\t| ") == 0) return given.front();
+  const std::string word =
+      arguments.choice("--delimiter", {"auto", "comma", "semicolon", "tab", "bar", "space"}, "auto");
+  return word == "comma"       ? ','
+         : word == "semicolon" ? ';'
+         : word == "tab"       ? '\t'
+         : word == "bar"       ? '|'
+         : word == "space"     ? ' '
+                               : '\0';
 }
 
 char decimal_mark(const Arguments& arguments) {
@@ -131,7 +137,10 @@ std::vector<Option> campaign_options() {
        0, true},
       {"--header-line", "N",
        "line of the file that holds the names (default: the first, or the one above the rows, told)", 0, false},
-      {"--delimiter", "MARK", "comma, semicolon, tab or bar (default: from the file)", 0, false},
+      {"--encoding", "NAME", "latin1, cp1252, gb18030, … as iconv calls it (default: UTF-8, or UTF-16 with its mark)",
+       0, false},
+      {"--delimiter", "MARK", "comma, semicolon, tab, bar, or space for any number of blanks (default: from the file)",
+       0, false},
       {"--decimal", "MARK", "point or comma (default: from the file)", 0, false},
       {"--columns", "NAMES", "names of the columns of files without a header line", 0, true},
       {"--max-errors", "N", "problems told of before giving up (default: 20)", 0, false},
@@ -151,6 +160,7 @@ CsvOptions csv_options(const Arguments& arguments) {
   CsvOptions options;
   options.separator = separator(arguments);
   options.decimal_mark = decimal_mark(arguments);
+  options.encoding = arguments.value_or("--encoding", "");
   options.columns = arguments.list("--columns");
   options.missing_marks = arguments.list("--missing-marks");
   options.header_line = static_cast<std::size_t>(arguments.integer("--header-line", 1, 100000).value_or(0));

@@ -23,6 +23,7 @@ const std::vector<FieldFlag>& field_flags() {
       THERMFIT_FLAG(CsvOptions, separator, "--delimiter"),
       THERMFIT_FLAG(CsvOptions, decimal_mark, "--decimal"),
       THERMFIT_FLAG(CsvOptions, columns, "--columns"),
+      THERMFIT_FLAG(CsvOptions, encoding, "--encoding"),
       THERMFIT_FLAG(CsvOptions, header_line, "--header-line"),
       THERMFIT_FLAG(CsvOptions, missing_marks, "--missing-marks"),
       THERMFIT_FLAG(CsvOptions, time_column, "--time-column"),

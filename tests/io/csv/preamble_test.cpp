@@ -36,8 +36,9 @@ std::string with_separator(std::string text, char separator) {
 TEST_CASE("names are found below what was written before them, with any separator, and their line is told", "[io]") {
   const Batch plain = read(names + rows).batches.front();
   for (const std::string before :
-       {"Warm-up test, machine 7\n", "Warm-up\nOperator: x\n\n", "Name:,Setup 1\nChannel,Name,Range\n101,Front,C\n102,Rear,C\n\n",
-        "Date: 04.05.2026 08:00:00\nChannels: 4\n", "\"Title, with quotes\"\n", "Type K thermocouples (2), probe; PLC\n1\n2\n"})
+       {"Warm-up test, machine 7\n", "Warm-up\nOperator: x\n\n",
+        "Name:,Setup 1\nChannel,Name,Range\n101,Front,C\n102,Rear,C\n\n", "Date: 04.05.2026 08:00:00\nChannels: 4\n",
+        "\"Title, with quotes\"\n", "Type K thermocouples (2), probe; PLC\n1\n2\n"})
     for (const char separator : {',', ';', '\t'}) {
       const CsvReading reading = read(before + with_separator(names + rows, separator));
       INFO(before << separator);
@@ -64,8 +65,9 @@ TEST_CASE("a header line that is not there is an error", "[io]") {
 
 TEST_CASE("units stand below the names, above them, or with a third line of words", "[io]") {
   const Batch plain = read("time_min,T1,T2,Z [mm]\n" + rows).batches.front();
-  for (const char* header : {"time,T1,T2,Z\nmin,°C,°C,mm\n", "min,degC,degC,mm\ntime,T1,T2,Z\n",
-                             "time,T1,T2,Z\nmin,°C,°C,mm\nch0,ch1,ch2,ch3\n", "time,T1,T2,Z\n[MIN],[DegC],[DegC],[MM]\n"}) {
+  for (const char* header :
+       {"time,T1,T2,Z\nmin,°C,°C,mm\n", "min,degC,degC,mm\ntime,T1,T2,Z\n",
+        "time,T1,T2,Z\nmin,°C,°C,mm\nch0,ch1,ch2,ch3\n", "time,T1,T2,Z\n[MIN],[DegC],[DegC],[MM]\n"}) {
     INFO(header);
     const Batch batch = read(header + rows).batches.front();
     CHECK(batch.time_s == plain.time_s);
@@ -93,9 +95,10 @@ TEST_CASE("sums at the end, a word that ends a file and the names again are no r
 }
 
 TEST_CASE("what instruments write without a reading is a missing value, as are marks that the user names", "[io]") {
-  for (const char* mark : {"OL", "---", "-", "#NV", "#N/A", "Overflow", "+OVER", "Burnout", "*", "?", "Open TC", "1.#QNAN",
-                           "ERR7", "-999.9"}) {
-    const std::string text = "time_s,T1,T2,Z\n0,20,20,0\n60,21,20.5,1\n120,22," + std::string(mark) + ",2\n180,23,21,3\n";
+  for (const char* mark : {"OL", "---", "-", "#NV", "#N/A", "Overflow", "+OVER", "Burnout", "*", "?", "Open TC",
+                           "1.#QNAN", "ERR7", "-999.9"}) {
+    const std::string text =
+        "time_s,T1,T2,Z\n0,20,20,0\n60,21,20.5,1\n120,22," + std::string(mark) + ",2\n180,23,21,3\n";
     INFO(mark);
     CsvOptions options;
     options.missing_marks = {"ERR7", "-999.9"};

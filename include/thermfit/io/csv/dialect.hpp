@@ -22,20 +22,28 @@ struct CsvDialect {
       returns = false,                     ///< carriage returns stand inside lines, and count as blanks
       compressed = false,                  ///< it is gzip
       unit_row = false;                    ///< the line below or above the names holds their units
+  std::string encoding;                    ///< where it is not UTF-8
   std::vector<std::string> missing_marks;  ///< CsvOptions::missing_marks
   std::size_t header_line = 0;             ///< of the names in the file where lines stand before it, else 0
 
   /// Whether commas separate, points are decimal marks, and there is nothing to be told. Does not allocate.
-  bool is_plain() const { return separator == ',' && decimal_mark == '.' && !unit_row && !returns && header_line == 0; }
+  bool is_plain() const {
+    return separator == ',' && decimal_mark == '.' && !unit_row && !returns && header_line == 0 && encoding.empty();
+  }
 
   /// "semicolon-separated, decimal comma, unit row".
   std::string description() const {
-    std::string text = separator == ',' ? "comma" : separator == ';' ? "semicolon" : separator == '|' ? "bar" : "tab";
+    std::string text = separator == ','   ? "comma"
+                       : separator == ';' ? "semicolon"
+                       : separator == '|' ? "bar"
+                       : separator == ' ' ? "blank"
+                                          : "tab";
     text += decimal_mark == ',' ? "-separated, decimal comma" : "-separated, decimal point";
     if (unit_row) text += ", unit row";
     if (header_line > 0) text += ", names in line " + std::to_string(header_line) + ", those above left out";
     if (bom) text += ", byte order mark";
     if (crlf) text += ", CRLF";
+    if (!encoding.empty()) text += ", " + encoding;
     if (returns) text += ", carriage returns inside lines taken as blanks";
     if (compressed) text += ", gzip";
     return text;
@@ -45,7 +53,11 @@ struct CsvDialect {
 namespace detail {
 
 inline std::string separator_name(char separator) {
-  return separator == ',' ? "comma" : separator == ';' ? "semicolon" : separator == '|' ? "bar" : "tab";
+  return separator == ','   ? "comma"
+         : separator == ';' ? "semicolon"
+         : separator == '|' ? "bar"
+         : separator == ' ' ? "blank"
+                            : "tab";
 }
 
 /// Looks like a decimal number written with `mark`, in digits only but for a sign, the mark and an exponent.
@@ -113,6 +125,22 @@ inline SeparatorEvidence weigh_separator(char separator, const CsvEvidence& evid
   return found;
 }
 
+/// Whether blanks divide every line into as many fields, two or more, of numbers in all but the first.
+inline bool blanks_separate(const CsvEvidence& evidence, std::size_t names_given) {
+  std::vector<CsvField> fields;
+  std::size_t wanted = names_given;
+  for (std::size_t i = 0; i < evidence.lines.size(); ++i) {
+    if (split_line(evidence.lines[i].text, ' ', fields)) return false;
+    if (wanted == 0) wanted = fields.size();
+    if (i > 0 && fields.size() == 1 && fields.front().text == "overrun") continue;
+    if (fields.size() != wanted || wanted < 2) return false;
+    if (i > 0 || names_given > 0)
+      for (const CsvField& field : fields)
+        if (!parse_field(field.text, '.') && !parse_field(field.text, ',') && !is_missing(field.text)) return false;
+  }
+  return evidence.lines.size() > 1;
+}
+
 /// The separator that makes a table of the file. Throws when two do, or when the header and the rows disagree.
 inline char detect_separator(const CsvEvidence& evidence, std::size_t names_given, const std::string& name) {
   std::vector<char> candidates;
@@ -120,6 +148,7 @@ inline char detect_separator(const CsvEvidence& evidence, std::size_t names_give
     if (std::any_of(evidence.lines.begin(), evidence.lines.end(),
                     [&](const auto& line) { return line.text.find(separator) != std::string_view::npos; }))
       candidates.push_back(separator);
+  if (candidates.empty() && blanks_separate(evidence, names_given)) return ' ';
   if (candidates.size() < 2) return candidates.empty() ? ',' : candidates.front();
 
   std::vector<SeparatorEvidence> tables, headers, rows;
@@ -209,6 +238,7 @@ inline char detect_decimal_mark(const CsvEvidence& evidence, char separator, boo
 inline CsvDialect detect_dialect(const detail::CsvLines& lines, const detail::CsvEvidence& evidence,
                                  const CsvOptions& options) {
   CsvDialect dialect;
+  dialect.encoding = lines.encoding();
   dialect.missing_marks = options.missing_marks;
   dialect.bom = lines.has_bom();
   dialect.crlf = lines.has_crlf();

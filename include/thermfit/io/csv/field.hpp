@@ -48,11 +48,15 @@ inline std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// Splits a line without its end. A quoted field ends on its line; quotes elsewhere are errors.
+/// Splits a line without its end; a blank as separator stands for any number of blanks and tabs. A quoted field ends on
+/// its line; quotes elsewhere are errors.
 inline std::optional<CsvFieldError> split_line(std::string_view line, char separator, std::vector<CsvField>& fields) {
   fields.clear();
+  if (separator == ' ') line = trim(line);
   std::size_t at = 0;
-  const auto blank = [&](std::size_t i) { return i < line.size() && is_blank(line[i]) && line[i] != separator; };
+  const auto blank = [&](std::size_t i) {
+    return i < line.size() && is_blank(line[i]) && (line[i] != separator || separator == ' ');
+  };
   for (;;) {
     std::size_t begin = at;
     while (blank(begin)) ++begin;
@@ -66,10 +70,10 @@ inline std::optional<CsvFieldError> split_line(std::string_view line, char separ
       fields.push_back({line.substr(begin + 1, end - begin - 1), begin + 1, true});
       at = end + 1;
       while (blank(at)) ++at;
-      if (at < line.size() && line[at] != separator)
+      if (at < line.size() && line[at] != separator && !(separator == ' ' && is_blank(line[at - 1])))
         return CsvFieldError{at + 1, "text behind a closing quote", "write a quote inside a field as \"\""};
     } else {
-      at = std::min(line.find(separator, begin), line.size());
+      at = std::min(separator == ' ' ? line.find_first_of(" \t", begin) : line.find(separator, begin), line.size());
       std::size_t end = at;
       while (end > begin && is_blank(line[end - 1])) --end;
       const std::string_view text = line.substr(begin, end - begin);
@@ -80,7 +84,7 @@ inline std::optional<CsvFieldError> split_line(std::string_view line, char separ
       fields.push_back({text, begin + 1, false});
     }
     if (at >= line.size()) return std::nullopt;
-    ++at;
+    at += separator != ' ';
   }
 }
 
@@ -108,6 +112,13 @@ inline bool is_missing(std::string_view text) {
 
 /// A whole field as a number, with `mark` for the decimal point.
 inline std::optional<double> parse_field(std::string_view text, char mark) {
+  if (text.size() > 3 && text.size() < 64 && text.substr(0, 3) == "\xE2\x88\x92") {  // the minus of typesetters
+    char buffer[64] = {'-'};
+    const std::string_view rest = text.substr(3);
+    if (rest.front() == '-' || rest.front() == '+' || rest.front() == '\xE2') return std::nullopt;
+    std::copy(rest.begin(), rest.end(), buffer + 1);
+    return parse_field({buffer, rest.size() + 1}, mark);
+  }
   if (mark == '.') return parse_number(text);
   char buffer[64];
   if (text.size() > sizeof buffer || text.find('.') != std::string_view::npos) return std::nullopt;

@@ -45,9 +45,10 @@ inline bool may_be_clock(const std::string& name) {
 
 struct CsvHeader {
   std::vector<CsvColumn> columns;
-  std::size_t line = 0;            ///< of the names; 0 when they were given
-  std::size_t content_lines = 0;   ///< lines it takes: names, unit row
-  bool empty_last_column = false;  ///< rows and header end in a separator
+  std::size_t line = 0;              ///< of the names; 0 when they were given
+  std::size_t content_lines = 0;     ///< lines it takes: names, unit row
+  std::vector<std::string> made_up;  ///< "Temp.2 (Temp again)": names that the file does not give
+  bool empty_last_column = false;    ///< rows and header end in a separator
 };
 
 inline bool is_utf8(std::string_view text) {
@@ -81,13 +82,19 @@ inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::st
   return known;
 }
 
+/// Throws Error where a line is no UTF-8.
+inline void require_utf8(std::string_view line, std::size_t number, const std::string& name) {
+  if (!is_utf8(line))
+    throw problem(
+        place(name, number), {"names that are not UTF-8"}, {"text in UTF-8"},
+        {"say CsvOptions::encoding = NAME: latin1 or cp1252 in western Europe, gb18030 in China, shift_jis in Japan"});
+}
+
 /// The columns that a line names, the `number`th of `name`. Throws Error when it is no UTF-8 or its quotes do not
 /// match.
 inline std::vector<CsvColumn> columns_in(std::string_view line, std::size_t number, char separator,
                                          const std::string& name) {
-  if (!is_utf8(line))
-    throw problem(place(name, number), {"names that are not UTF-8"}, {"text in UTF-8"},
-                  {"convert: iconv -f WINDOWS-1252 -t UTF-8 FILE"});
+  require_utf8(line, number, name);
   std::vector<CsvField> fields;
   if (const auto broken = split_line(line, separator, fields))
     throw problem(place(name, number, broken->column), {broken->found}, {}, {broken->remedy});
@@ -131,7 +138,8 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
       }))
     throw problem(place(name, first.number), {"numbers where the names of the columns should be"}, {"a header line"},
                   {"add one, or name the columns: CsvOptions::columns = NAME,NAME,…"});
-  if (header.columns.size() > 2 && header.columns.back().title == "Comment" && lacks_last_field(evidence, dialect.separator, header.columns.size()))
+  if (header.columns.size() > 2 && header.columns.back().title == "Comment" &&
+      lacks_last_field(evidence, dialect.separator, header.columns.size()))
     header.columns.pop_back();  // LabVIEW names it also where no row has one
   header.empty_last_column = header.columns.size() > 1 && header.columns.back().title.empty() &&
                              rows_end_in_separator(evidence, dialect.separator);
@@ -155,6 +163,7 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
       if (header.columns[c].unit.empty()) header.columns[c].unit = units[c];
     return header;
   }
+  if (evidence.lines.size() > 1) require_utf8(evidence.lines[1].text, evidence.lines[1].number, name);
   if (evidence.lines.size() > 1 && !split_line(evidence.lines[1].text, dialect.separator, fields) &&
       fields.size() == header.columns.size() + header.empty_last_column && is_unit_row(fields, units)) {
     dialect.unit_row = true;
@@ -194,14 +203,30 @@ inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, c
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const CsvColumn& column = header.columns[c];
     const std::string at = header.line == 0 ? "CsvOptions::columns" : place(name, header.line, column.position);
-    if (column.name.empty())
+    const bool given = header.line == 0;
+    if (column.name.empty() && given)
       problems.add(problem(at, {"column ", std::to_string(c + 1), " has no name"}, {"a name for each column"}));
     const auto [before, fresh] = first_of_name.emplace(column.name, c + 1);
-    if (!fresh && !column.name.empty())
+    if (fresh && !column.name.empty()) continue;
+    // A name is made up where that changes no meaning: which clock a channel belongs to cannot be made up.
+    const bool is_clock = !time_unit_in(column.name).empty();
+    if (given || is_clock) {
       problems.add(problem(at,
                            {"column ", std::to_string(c + 1), " is called ", shown(column.name), " like column ",
                             std::to_string(before->second)},
-                           {"names that differ"}, {"rename one in the header line"}));
+                           {is_clock ? "one clock for all channels" : "names that differ"},
+                           {"rename one in the header line"}));
+      continue;
+    }
+    std::string made = column.name.empty() ? "column" + std::to_string(c + 1) : column.name + ".2";
+    for (int n = 3; first_of_name.count(made) || std::any_of(header.columns.begin(), header.columns.end(),
+                                                             [&](const CsvColumn& one) { return one.is_called(made); });
+         ++n)
+      made = (column.name.empty() ? "column" + std::to_string(c + 1) : column.name) + '.' + std::to_string(n);
+    header.made_up.push_back(column.name.empty() ? made + " (no name)" : made + " (" + column.name + " again)");
+    CsvColumn& named = header.columns[c];
+    named.name = named.title = made;
+    first_of_name.emplace(made, c + 1);
   }
   problems.throw_if_any();
   return header;

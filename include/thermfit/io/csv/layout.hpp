@@ -23,6 +23,7 @@ struct CsvRoles {
   std::vector<std::string> converted;     ///< "T1 from degF"
   std::vector<std::string> contradicted;  ///< "Z in mm, its title says um": CsvOptions::units against the file
   std::vector<std::string> nearly;        ///< "t1 (not T1)": an input whose name is nearly that of another role
+  std::vector<std::string> made_up;       ///< "column1 (no name)", "Temp.2 (Temp again)"
   std::string clock;                      ///< how the clock is read, where that is not plain
   bool assumed_minutes = false;           ///< nobody said what the clock counts
 };
@@ -80,6 +81,7 @@ class LayoutMaker {
   LayoutMaker(const CsvHeader& header, std::vector<ColumnContent> contents, const CsvOptions& options, std::string name)
       : header_(header), contents_(std::move(contents)), options_(options), name_(std::move(name)) {
     layout_.columns = header.columns;
+    layout_.roles.made_up = header.made_up;
     layout_.slots.resize(header.columns.size() + header.empty_last_column);
     if (header.empty_last_column) layout_.slots.back().role = CsvRole::empty;
     taken_.resize(header.columns.size());

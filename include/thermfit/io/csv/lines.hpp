@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "thermfit/io/files/byte_source.hpp"
+#include "thermfit/io/files/transcoder.hpp"
 #include "thermfit/io/problems.hpp"
 
 namespace thermfit::detail {
@@ -31,8 +33,9 @@ inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 /// text: other encodings, workbooks, NUL bytes, lone carriage returns, endless lines.
 class CsvLines {
  public:
-  CsvLines(const std::string& path, std::size_t max_line_bytes)
-      : source_(path), max_line_bytes_(max_line_bytes), buffer_(block_bytes) {
+  /// `encoding`: empty for UTF-8, and UTF-16 where a byte order mark says so.
+  CsvLines(const std::string& path, std::size_t max_line_bytes, const std::string& encoding = {})
+      : source_(path), max_line_bytes_(max_line_bytes), buffer_(block_bytes), encoding_(encoding) {
     while ((end_ < head_bytes || (!holds_two_content_lines() && end_ < 2 * max_line_bytes_)) && fill()) {
     }
     if (!at_end_ && text().find('\n') == std::string_view::npos) refuse_long(end_);
@@ -50,6 +53,7 @@ class CsvLines {
 
   const std::string& name() const { return source_.name(); }
   bool compressed() const { return source_.compressed(); }
+  const std::string& encoding() const { return encoding_; }  ///< as told or found; empty: UTF-8
   bool has_bom() const { return bom_; }
   bool has_crlf() const { return crlf_; }
   std::size_t line_number() const { return line_number_; }  ///< of the line that next() gave last, from 1
@@ -115,9 +119,15 @@ class CsvLines {
       begin_ = 0;
     }
     if (end_ == buffer_.size()) buffer_.resize(2 * buffer_.size());
-    const std::size_t count = source_.read(buffer_.data() + end_, buffer_.size() - end_);
+    std::size_t count = source_.read(buffer_.data() + end_, buffer_.size() - end_);
     at_end_ = count == 0;
-    if (line_number_ == 0 && end_ == 0) refuse_foreign_content({buffer_.data(), count});
+    if (line_number_ == 0 && end_ == 0) {
+      const std::string_view start(buffer_.data(), count);
+      if (encoding_.empty() && (start.substr(0, 2) == "\xFF\xFE" || start.substr(0, 2) == "\xFE\xFF"))
+        encoding_ = "UTF-16";
+      refuse_foreign_content(start);
+    }
+    if (!encoding_.empty()) count = transcode(count);
     if (const void* nul = std::memchr(buffer_.data() + end_, '\0', count)) {
       const auto offset = static_cast<std::size_t>(static_cast<const char*>(nul) - buffer_.data());
       const std::string_view before(buffer_.data(), offset);
@@ -127,12 +137,20 @@ class CsvLines {
                     {"a logger that lost power may leave such bytes: cut them out; a binary file is not read"});
     }
     end_ += count;
-    return count > 0;
+    return !at_end_;
+  }
+
+  /// Puts UTF-8 in the place of `count` bytes behind the text; how many bytes that is.
+  std::size_t transcode(std::size_t count) {
+    if (!transcoder_) transcoder_ = std::make_unique<Transcoder>(encoding_, name());
+    std::string text;
+    transcoder_->append({buffer_.data() + end_, count}, text);
+    if (end_ + text.size() > buffer_.size()) buffer_.resize(end_ + text.size());
+    std::copy(text.begin(), text.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(end_));
+    return text.size();
   }
 
   void refuse_foreign_content(std::string_view start) const {
-    if (start.substr(0, 2) == "\xFF\xFE" || start.substr(0, 2) == "\xFE\xFF")
-      throw problem(name(), {"is UTF-16"}, {"text in UTF-8"}, {"convert: iconv -f UTF-16 -t UTF-8 FILE"});
     if (start.substr(0, 4) == "PK\x03\x04")
       throw problem(name(), {"is an Excel workbook or a zip archive"}, {"text in UTF-8"}, {"save the sheet as CSV"});
     if (start.substr(0, 4) == "\xD0\xCF\x11\xE0")
@@ -142,6 +160,8 @@ class CsvLines {
   ByteSource source_;
   std::size_t max_line_bytes_;
   std::vector<char> buffer_;
+  std::string encoding_;
+  std::unique_ptr<Transcoder> transcoder_;
   std::size_t begin_ = 0, end_ = 0;
   std::size_t line_number_ = 0;
   bool at_end_ = false, bom_ = false, crlf_ = false;

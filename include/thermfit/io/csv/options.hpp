@@ -34,12 +34,13 @@ struct CsvUnit {
 /// How to read a CSV file. The defaults read what formats.md describes; each member overrides one guess.
 /// A name may be a glob of `*` and `?`; a name that is spelled exactly as a column wins over the glob.
 struct CsvOptions {
-  char separator = 0;                              ///< `,` `;` tab or `|`; 0: from the file
-  char decimal_mark = 0;                           ///< `.` or `,`; 0: from the file
-  std::vector<std::string> columns;                ///< names for a file that has no header line
-  std::size_t header_line = 0;                     ///< of the names, from 1; 0: the first, or the one above the rows
-  std::vector<std::string> missing_marks;          ///< cells without a reading, besides those that instruments write
-  std::string time_column;                         ///< empty: by name or ISO 8601 content; "none": no time
+  char separator = 0;                      ///< `,` `;` tab, `|`, or a blank for any number of them; 0: from the file
+  char decimal_mark = 0;                   ///< `.` or `,`; 0: from the file
+  std::string encoding;                    ///< as iconv calls it; empty: UTF-8, or UTF-16 where a mark says so
+  std::vector<std::string> columns;        ///< names for a file that has no header line
+  std::size_t header_line = 0;             ///< of the names, from 1; 0: the first, or the one above the rows
+  std::vector<std::string> missing_marks;  ///< cells without a reading, besides those that instruments write
+  std::string time_column;                 ///< empty: by name or ISO 8601 content; "none": no time
   TimeFormat time_format = TimeFormat::from_file;  ///< of the clock
   std::string time_unit;                           ///< for a time column that does not name its unit; empty: min
   std::vector<std::string> temperatures;           ///< empty: `T` and digits

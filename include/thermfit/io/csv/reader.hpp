@@ -297,6 +297,7 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
     if (file.roles.assumed_minutes)
       add(file, file.roles.time + " names no unit: minutes (CsvOptions::time_unit tells another)");
     if (!file.roles.clock.empty()) add(file, file.roles.clock + " (CsvOptions::time_format = FORMAT tells another)");
+    if (!file.roles.made_up.empty()) add(file, "columns named here: " + name_list(file.roles.made_up));
     if (file.left_out_lines > 0)
       add(file, std::to_string(file.left_out_lines) + (file.left_out_lines == 1 ? " line" : " lines") +
                     " left out as no rows, first " + file.first_left_out);

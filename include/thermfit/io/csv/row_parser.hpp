@@ -92,7 +92,7 @@ class RowParser {
 
   /// The fast way: plain numbers, no quotes. False when anything is out of the ordinary; then parse_carefully decides.
   bool parse_plain(std::string_view line) {
-    if (!dialect_.missing_marks.empty()) return false;  // a mark may look like a number
+    if (!dialect_.missing_marks.empty() || dialect_.separator == ' ') return false;  // a mark may look like a number
     const char separator = dialect_.separator, mark = dialect_.decimal_mark;
     const char* at = line.data();
     const char* const end = at + line.size();

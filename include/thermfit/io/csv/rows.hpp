@@ -52,7 +52,7 @@ class CsvRowReader {
   CsvRowReader(const std::string& path, const CsvOptions& options, Problems& problems)
       : options_(options),
         problems_(problems),
-        lines_(path, options.max_line_bytes),
+        lines_(path, options.max_line_bytes, options.encoding),
         parser_(layout_, file_.dialect, file_.path, problems),
         cells_(parser_.cells()) {
     detail::CsvEvidence evidence(lines_.head());

@@ -1,11 +1,12 @@
 // Campaigns written with every clock that loggers have read back with the times they were made from.
+#include "thermfit/io/csv/stamp.hpp"
+
 #include <functional>
 #include <random>
 
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 #include "thermfit/io/csv/reader.hpp"
-#include "thermfit/io/csv/stamp.hpp"
 
 using namespace thermfit;
 
@@ -196,4 +197,18 @@ TEST_CASE("what is no stamp is none", "[io]") {
     CHECK_FALSE(detail::parse_stamp(text));
   for (const char* text : {"31.02.2026", "29.02.2025", "0.5.2026"})
     CHECK_FALSE(detail::instant(*detail::parse_stamp(text), DateOrder::day_first));
+}
+
+TEST_CASE("of rows that come newest first the oldest is row 1, also where it is left out, and rises count from it",
+          "[io]") {
+  CsvOptions options;
+  options.missing = MissingValues::drop;
+  const Batch batch = read(
+                          "at,T1,Z\n2026-05-04 8:03:00,23,4\n2026-05-04 8:02:00,22,3\n2026-05-04 "
+                          "8:01:00,21,2\n2026-05-04 8:00:00,20,\n",
+                          options)
+                          .batches.front();
+  CHECK(batch.rows() == 3);
+  CHECK(batch.number_of(0) == 2);
+  CHECK(batch.first_degC == (Vector(1) << 20).finished());
 }
