@@ -88,8 +88,9 @@ class CsvRowReader {
     return found != states_.end() && found->second.decreasing && !found->second.to_and_fro;
   }
 
-  /// The rows of a batch met so far, also those left out, and the temperatures of the oldest. Does not allocate.
+  /// The rows of a batch met so far, also those left out. Does not allocate.
   Index rows_met(const std::string& batch) const { return states_.at(batch).rows; }
+  /// Temperatures of the oldest row of a batch, also where it is left out; NaN where it has none. Does not allocate.
   const std::vector<double>& first_degC(const std::string& batch) const { return states_.at(batch).first_degC; }
 
   /// The next row that is good; false at the end, after which missing values and an absence of rows are told.
