@@ -29,7 +29,8 @@ const char* const details =
     "machine.\n"
     "Begins with what failed: a machine that fits no better than before, channels far beyond their noise, parameters "
     "beyond belief or moved although the data do not know them; then what the machine may lack. Nothing is written "
-    "where parameters are beyond belief, at a bound, or no better than before. Batches that are not written down as "
+    "where parameters are beyond belief, at a bound, or no better than before, unless --keep-failed. Batches that are "
+    "not written down as "
     "the "
     "machine file is (units, signs, clocks, exchanged columns) are told and not fitted.\n"
     "A gap that remains afterwards is not miscalibration: see `thermfit diagnose`.\n"
@@ -38,6 +39,7 @@ const char* const details =
 std::vector<Option> options() {
   std::vector<Option> all{
       {"--output", "FILE", "write the calibrated machine there", 'o', false},
+      {"--keep-failed", "", "write it even where the calibration is not to be believed", 0, false},
       {"--json", "", "machine-readable result, thermfit-calibration/1", 0, false},
       {"--all", "", "show every parameter, not only those that moved", 0, false},
       {"--starts", "N", "fits from different points, the best is kept; 1 to 100 (default: 3)", 0, false},
@@ -100,7 +102,7 @@ Exit run(const Arguments& arguments, Console& console) {
   verdict.shortcomings = shortcomings(calibration, seen);
   if (!verdict.shortcomings.empty()) verdict.suspects = suspects(calibration, seen, clean.campaign, effects);
   console.progress("");
-  if (output && verdict.spoilt())
+  if (output && verdict.spoilt() && !arguments.has("--keep-failed"))
     console.note(*output + ": not written: the calibrated machine is not to be believed");
   else if (output)
     save_machine(calibration.fit.network(), *output);

@@ -25,7 +25,7 @@ const char* const details =
   jump        a lasting step, of one row or a few, that no input and no other channel explains
   collinear   a point that others give more closely than rounding allows
   unit        values that make sense in another unit only
-  range       a temperature that starts hot: right at a hot place, or in another unit
+  range       a temperature that starts hot, an error far from zero: right where it is so, or another unit or zero
   impossible  a number that no machine can have: what an instrument writes without a reading
   copy        the numbers of another batch once more
   level       a thermal error that starts further apart in its batches than it moves in one: the probe's zero

@@ -2,7 +2,6 @@
 #include "thermfit/diagnosis/planning/next_experiment.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
 #include "thermfit/diagnosis/sides/machine_sides.hpp"
-#include "thermfit/diagnosis/sides/output_sides.hpp"
 #include "thermfit/findings/findings.hpp"
 #include "thermfit/simulation.hpp"
 #include "thermfit/statistics/follows.hpp"
@@ -15,3 +14,4 @@
 #define THERMFIT_COMPILED_ELSEWHERE
 
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
+#include "thermfit/diagnosis/outputs/output_sides.hpp"

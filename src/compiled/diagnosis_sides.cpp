@@ -12,4 +12,3 @@
 
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
 #include "thermfit/diagnosis/sides/machine_sides.hpp"
-#include "thermfit/diagnosis/sides/output_sides.hpp"

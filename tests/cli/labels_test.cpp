@@ -19,8 +19,7 @@ TEST_CASE("short names are their own labels", "[cli]") {
 TEST_CASE("words that all names begin and end with are cut, and told", "[cli]") {
   const Labels labels({"2021-03 warm-up lathe run 07 north", "2021-03 warm-up lathe run 12 north"}, 'b', 8);
   CHECK(labels.all() == Names{"run 07", "run 12"});
-  CHECK(labels.legend() ==
-        "Names are shown without '2021-03 warm-up lathe ' before them and ' north' behind them.\n");
+  CHECK(labels.legend() == "Names are shown without '2021-03 warm-up lathe ' before them and ' north' behind them.\n");
   const Labels digits({"spindle_front_T1", "spindle_front_T12"}, 'p', 8);
   CHECK(digits.all() == Names{"T1", "T12"});
 }
@@ -37,7 +36,7 @@ TEST_CASE("names that stay long are numbered, and the legend gives each its name
 }
 
 TEST_CASE("labels differ where names do, and are as narrow as asked", "[cli]") {
-  for (const std::size_t count : {2, 24, 43}) {
+  for (const std::size_t count : {std::size_t{2}, std::size_t{24}, std::size_t{43}}) {
     Names names;
     for (std::size_t i = 0; i < count; ++i)
       names.push_back("2021-0" + std::to_string(i % 9 + 1) + "-11_machine " + std::to_string(i) + "_warm-up ä");

@@ -101,7 +101,7 @@ const std::vector<Fault> faults{
     {FindingRule::unit, "T4", 0, 0,
      [](Batch& batch) { temperature(batch, 4) = (1.8 * temperature(batch, 4).array() + 32).matrix(); }},
     {FindingRule::unit, "Z", 0, 0, [](Batch& batch) { batch.errors.values /= 1000; }},
-    {FindingRule::level, "Z", 0, 0, [](Batch& batch) { batch.errors.values.array() += 102350; }},
+    {FindingRule::range, "Z", 0, 0, [](Batch& batch) { batch.errors.values.array() += 102350; }},
     {FindingRule::missing, "T1", 20, 24,
      [](Batch& batch) { temperature(batch, 1).segment(20, 5).setConstant(std::nan("")); }},
     {FindingRule::time_gap, "time", 29, 30, [](Batch& batch) { remove_rows(batch, 30, 6); }},

@@ -57,7 +57,7 @@ class Bench {
   }
 
   void calibrate(const std::string& machine, const std::vector<std::string>& batches, const std::string& to) const {
-    std::vector<std::string> words{"calibrate", machine, "-o", to};
+    std::vector<std::string> words{"calibrate", machine, "--keep-failed", "-o", to};
     words.insert(words.end(), batches.begin(), batches.end());
     REQUIRE(thermfit::cli::run(words) <= 1);
   }

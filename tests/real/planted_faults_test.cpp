@@ -207,7 +207,7 @@ TEST_CASE("a fault planted into a thermometer of a measured lathe is named at th
                                     {3, "wall", "sensor-drift", drift(4)}};
   for (const Planted& one : faults) {
     const nlohmann::json said = lathe.with(one.column, one.fault);
-    CAPTURE(one.sensor, one.effect, said.at("verdict"), said.at("effects").dump());
+    CAPTURE(one.sensor, one.effect, said.at("verdict"), said.at("effects").dump(), said.at("data_problems").dump());
     REQUIRE_FALSE(said.at("effects").empty());
     CHECK(said.at("effects").at(0).at("effect") == one.effect);
     CHECK(said.at("effects").at(0).at("location") == one.sensor);

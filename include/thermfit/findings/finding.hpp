@@ -30,7 +30,7 @@ enum class FindingRule {
   disagrees,   ///< one that does not go with the others, in no way that has a name; or such an error
   sign,        ///< an error of opposite sign to what the other batches say
   step,        ///< another time step than in the other batches
-  range        ///< a temperature that starts far from a workshop's: right at a hot place, or in another unit
+  range        ///< a temperature that starts hot, an error far from zero: right where it is so, or another unit or zero
 };
 
 /// The rule's name in tables and JSON. Does not allocate.

@@ -141,6 +141,18 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
   for (std::size_t k = 0; k < breaks.size(); ++k) {
     const auto size = [&](std::size_t b) { return values[breaks[b].to] - values[breaks[b].from]; };
     const std::size_t from = kept[breaks[k].from], to = kept[breaks[k].to];
+    if (k + 1 < breaks.size() && size(k) * size(k + 1) < 0 &&
+        std::abs(size(k) + size(k + 1)) < limits.back_share * std::abs(size(k))) {
+      // One switch does not move a channel there and back.
+      const std::size_t back = kept[breaks[k + 1].from];
+      const auto first = std::lower_bound(switching.begin(), switching.end(), series.rows[to] - limits.settling_rows),
+                 end = std::upper_bound(switching.begin(), switching.end(), series.rows[back] + 1);
+      if (back - to < limits.back_within_rows && end - first == 1) {
+        spike(to, back, std::abs(size(k)), jump_limit, "off the readings around them: contact, interference?");
+        ++k;
+        continue;
+      }
+    }
     if (explained(to, from)) continue;
     if (k + 1 < breaks.size() && size(k) * size(k + 1) < 0 &&
         std::abs(size(k) + size(k + 1)) < limits.back_share * std::abs(size(k))) {

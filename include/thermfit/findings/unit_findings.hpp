@@ -89,7 +89,7 @@ inline std::vector<Finding> unit_findings(const Batch& batch, const UnitLimits& 
       findings.push_back({FindingRule::unit, name, 0, 0, size, limits.largest_error_um, "um",
                           "too much for micrometres: nm or counts?"});
     else if (size > limits.largest_error_um)
-      findings.push_back({FindingRule::level, name, 0, 0, size, limits.largest_error_um, "um",
+      findings.push_back({FindingRule::range, name, 0, 0, size, limits.largest_error_um, "um",
                           "stands far from zero: a machine coordinate? TrainingPlan::error_reference = start takes it "
                           "off"});
     else if (scale.range() > 0 && scale.range() < limits.smallest_range_um &&

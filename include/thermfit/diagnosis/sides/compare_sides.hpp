@@ -367,6 +367,7 @@ class SideComparison {
         if (channel(i).displacement != channel(j).displacement) continue;
         const double ratio = both(i, j, j, i) / both(i, i, j, j);
         if (ratio > limits_.exchanged) continue;
+        if (misfit(i, j) > misfit(i, i) || misfit(j, i) > misfit(j, j)) continue;  // one faulty thermometer
         const double a = weigh(i, j, all_, {}).nats - free_nats(i), b = weigh(j, i, all_, {}).nats - free_nats(j);
         const double stretched = a > 0 && b > 0 ? a + b : 0;  // by how much less calibration must stretch
         const double nats = std::max(stretched, ratio < limits_.plain ? plain_nats(ratio) : 0.);
@@ -538,7 +539,8 @@ class SideComparison {
     double sum = 0;
     const double looks = looks_per_batch * static_cast<double>(batches.size());
     for (std::size_t c = 0; c < sides_.channels.size(); ++c) {
-      auto [y, x] = courses(c, c, batches);
+      const std::pair<VectorX<Scalar>, VectorX<Scalar>> both = courses(c, c, batches);
+      const VectorX<Scalar>&y = both.first, &x = both.second;
       MatrixX<Scalar> directions = directions_of(c, batches), moved = directions;
       VectorX<Scalar> later_x = x, there = VectorX<Scalar>::Ones(x.size());
       Index row = 0;
