@@ -43,7 +43,7 @@ std::string made(std::size_t rows, const std::string& header) {
 
 TEST_CASE("a campaign is the same in every encoding, also where it is longer than a block", "[io]") {
   const std::string european = "Zeit [s],Lager °C,Gehäuse °C,Größe [µm]\n", chinese = "时间[s],温度1,温度2,位移Z\n";
-  for (const std::size_t rows : {3, 20000})
+  for (const std::size_t rows : {std::size_t{3}, std::size_t{20000}})
     for (const auto& [encoding, header] :
          std::vector<std::pair<const char*, std::string>>{{"UTF-16", european},
                                                           {"UTF-16", chinese},
