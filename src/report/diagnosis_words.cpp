@@ -199,9 +199,7 @@ std::string where_in(const DataProblem& problem) {
   return problem.batches.empty() ? "" : " (in " + joined(problem.batches) + ")";
 }
 
-std::string times_text(double factor) {
-  return factor < 100 ? general_text(factor, 2) : fixed_text(factor, 0);
-}
+std::string times_text(double factor) { return factor < 100 ? general_text(factor, 2) : fixed_text(factor, 0); }
 
 /// Which unit of time was taken for which.
 std::string mistaken_clock(double factor) {

@@ -333,8 +333,8 @@ class ErrorSection {
     left.residuals = r_.transfer->residuals;
     const std::size_t worst = left.worst(e_, &Residuals<>::rmse);
     table.add({"transfer", fixed_text(left.mean(e_, &Residuals<>::rmse), 2),
-               fixed_text(left.residuals[worst][e_].rmse(), 2), batches_[worst],
-               fixed_text(left.pooled(e_).rmse(), 2), fixed_text(left.mean(e_, &Residuals<>::rmse_without_bias), 2)});
+               fixed_text(left.residuals[worst][e_].rmse(), 2), batches_[worst], fixed_text(left.pooled(e_).rmse(), 2),
+               fixed_text(left.mean(e_, &Residuals<>::rmse_without_bias), 2)});
     std::vector<std::pair<std::string, std::size_t>> chosen;
     for (const auto& fits : r_.transfer->fits) {
       const std::string words = in_words(fits[e_].penalties, r_.transfer_lags_min);
