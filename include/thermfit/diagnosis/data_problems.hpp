@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/batch/batch.hpp"
 #include "thermfit/compiled.hpp"
 #include "thermfit/diagnosis/diagnosis.hpp"
 #include "thermfit/findings/finding.hpp"
