@@ -107,13 +107,16 @@ void print_summary(const TrainedModel& model, const std::vector<Predicted>& all,
 /// Says which batches a model on errors as recorded misses mostly by where their errors start.
 void note_zeros(TrainedModel model, const std::vector<Predicted>& all, Console& console) {
   model.error_reference = ErrorReference::start;
+  std::vector<Vector> S_from_start;
+  for (const auto& [batch, p] : all) S_from_start.push_back(p.S_um.size() > 0 ? predict(model, *batch).S_um : Vector());
   for (std::size_t e = 0; e < model.errors.size(); ++e) {
     const auto error = static_cast<Index>(e);
     std::vector<std::string> batches;
     double recorded = 0, from_start = 0;
-    for (const auto& [batch, p] : all) {
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      const auto& [batch, p] = all[b];
       if (p.S_um.size() == 0) continue;
-      const double own = predict(model, *batch).S_um(error);
+      const double own = S_from_start[b](error);
       if (!(own * own < p.S_um(error) * p.S_um(error) / 2)) continue;
       batches.push_back(batch->name);
       if (p.S_um(error) < recorded) continue;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,20 @@ struct BatchPrediction {
 
 namespace detail {
 
-/// The batch as rises of `model` count in it: from its first row, or, where that was left out and errors do so too,
-/// from the first that is there.
-inline Batch as_counted(const TrainedModel& model, const Batch& batch) {
-  const bool later = !lacks_first_reading(batch).empty() && model.error_reference != ErrorReference::recorded;
-  return later ? from_first_row_there(batch) : batch;
-}
+/// The batch as rises of a model count in it: from its first row, or, where that was left out and errors do so too,
+/// from the first that is there; a copy only then.
+class CountedBatch {
+ public:
+  CountedBatch(const TrainedModel& model, const Batch& batch) : batch_(batch) {
+    if (model.error_reference != ErrorReference::recorded && !lacks_first_reading(batch).empty())
+      later_ = from_first_row_there(batch);
+  }
+  const Batch& operator*() const { return later_ ? *later_ : batch_; }
+
+ private:
+  const Batch& batch_;
+  std::optional<Batch> later_;
+};
 
 /// Columns of the model's points. Throws Error on one that the batch lacks, naming those there are.
 inline std::vector<Index> columns_of(const TrainedModel& model, const Batch& batch) {
@@ -57,7 +66,7 @@ inline std::vector<Index> columns_of(const TrainedModel& model, const Batch& bat
 
 /// The climate of `batch` for a model with features, degC. Throws Error on a point the batch lacks.
 inline double model_climate_degC(const TrainedModel& model, const Batch& batch) {
-  return climate_degC(detail::as_counted(model, batch), detail::columns_of(model, batch));
+  return climate_degC(*detail::CountedBatch(model, batch), detail::columns_of(model, batch));
 }
 
 /// Temperatures of `batch` as `model` wants them: its points, in its order, as rise or absolute, or its features; rows
@@ -68,9 +77,9 @@ template <typename Scalar = double>
 MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
   if (model.reference == TemperatureReference::rise && model.error_reference == ErrorReference::recorded)
     require_first_readings(batch, model.temperatures);
-  const Batch counted = detail::as_counted(model, batch);
-  const MatrixX<Scalar> chosen =
-      model_temperatures<Scalar>(counted, model.reference)(Eigen::all, detail::columns_of(model, batch));
+  const detail::CountedBatch counted(model, batch);
+  const std::vector<Index> columns = detail::columns_of(model, batch);
+  const MatrixX<Scalar> chosen = model_temperatures<Scalar>(*counted, model.reference)(Eigen::all, columns);
   if (model.features.empty()) return chosen;
   for (const Feature& feature : model.features)
     if (feature.kind == FeatureKind::lag && !batch.has_time())
@@ -79,7 +88,7 @@ MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
                   "name it (CsvOptions::time_column, CsvOptions::time_unit)");
   return feature_columns(model.features, chosen,
                          VectorX<Scalar>(detail::lazy<Scalar>(batch.time_s).template cast<Scalar>()),
-                         static_cast<Scalar>(model.climate.factor(model_climate_degC(model, batch))));
+                         static_cast<Scalar>(model.climate.factor(climate_degC(*counted, columns))));
 }
 
 namespace detail {
