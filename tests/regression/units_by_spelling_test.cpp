@@ -1,7 +1,7 @@
 // A unit written in another way than in brackets was no unit: Z_mm or 'Z / mm' named by an option was read as um, a
 // thousand times too small, and a thermometer called 'T3 (Deg. C)' or t3 became an input without a word.
 #include "support/catch.hpp"
-#include "support/scratch_folder.hpp"
+#include "support/read_text.hpp"
 #include "thermfit/io/csv/reader.hpp"
 #include "thermfit/io/csv/writer.hpp"
 
@@ -11,14 +11,9 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-CsvReading read(const std::string& text, const CsvOptions& options = {}) {
-  const ScratchFolder folder;
-  return read_campaign({folder.write("a.csv", text)}, options);
-}
-
 std::string notes(const std::string& text, const CsvOptions& options = {}) {
   std::string all;
-  for (const std::string& note : read(text, options).notes(options))
+  for (const std::string& note : read_text(text, options).notes(options))
     all += note.substr(note.find("a.csv: ") + 7) + '\n';
   return all;
 }
@@ -33,7 +28,7 @@ TEST_CASE("an error in mm is in mm however its unit is written, and whether it i
       CsvOptions options;
       options.errors = errors;
       INFO(title << ", " << (errors.empty() ? "by default" : errors.front()));
-      const Batch batch = read(text, options).batches.front();
+      const Batch batch = read_text(text, options).batches.front();
       REQUIRE(batch.errors.count() == 1);
       CHECK(batch.errors.values(1, 0) == Approx(2).epsilon(1e-14));
       const bool in_brackets = title.find('[') != std::string::npos;
@@ -43,7 +38,7 @@ TEST_CASE("an error in mm is in mm however its unit is written, and whether it i
 }
 
 TEST_CASE("what is no temperature and no error keeps its title, unit and all") {
-  const Batch batch = read("time_s,T1_degC,Z_um,pos_mm,room_degC\n0,20,1,5,20\n").batches.front();
+  const Batch batch = read_text("time_s,T1_degC,Z_um,pos_mm,room_degC\n0,20,1,5,20\n").batches.front();
   CHECK(batch.temperatures.names == Names{"T1"});
   CHECK(batch.errors.names == Names{"Z"});
   CHECK(batch.inputs.names == Names{"pos_mm", "room_degC"});
@@ -53,7 +48,7 @@ TEST_CASE("units by option hold for names and globs, and win over the file with 
   CsvOptions options;
   options.units = {{"Z", "mm"}, {"T*", "degF"}, {"Time", "h"}};
   const std::string text = "Time,T1,T2 [degC],Z\n0,68,50,0.001\n1,86,32,0.002\n";
-  const Batch batch = read(text, options).batches.front();
+  const Batch batch = read_text(text, options).batches.front();
   CHECK(batch.temperatures.values == (Matrix(2, 2) << 20, 10, 30, 0).finished());
   CHECK(batch.errors.values == (Matrix(2, 1) << 1, 2).finished());
   CHECK(batch.time_s(1) == 3600);
@@ -76,21 +71,21 @@ TEST_CASE("a column that is nearly a temperature or an error is told when it bec
 
 TEST_CASE("carriage returns that pasting left inside lines are blanks, and are told") {
   const std::string pasted = "time_s,T1,T2\r,Z\r\n0,20.0,20.0\r,0.0\r\n60,20.5,20.2\r,1.1\r\n";
-  const Batch batch = read(pasted).batches.front();
+  const Batch batch = read_text(pasted).batches.front();
   CHECK(batch.temperatures.names == Names{"T1", "T2"});
   CHECK(batch.temperatures.values(1, 1) == 20.2);
   CHECK(notes(pasted) == "comma-separated, decimal point, CRLF, carriage returns inside lines taken as blanks\n");
-  CHECK(read("time_s,T1\r\r\n0,20\r\r\n").batches.front().temperatures.values(0, 0) == 20);
+  CHECK(read_text("time_s,T1\r\r\n0,20\r\r\n").batches.front().temperatures.values(0, 0) == 20);
 }
 
 TEST_CASE("a name that ends in a unit is written so that its numbers read back as they are") {
   CsvOptions options;
   options.errors = {"Z_mm"};
   options.temperatures = {"T1_degF"};
-  const Batch batch = read("time_s,T1_degF,Z_mm\n0,68,0.001\n1,86,0.002\n", options).batches.front();
+  const Batch batch = read_text("time_s,T1_degF,Z_mm\n0,68,0.001\n1,86,0.002\n", options).batches.front();
   const std::string written = write_csv(batch);
   CHECK(written.substr(0, written.find('\n')) == "time_s,T1_degF [degC],Z_mm [um]");
-  const Batch again = read(written, options).batches.front();
+  const Batch again = read_text(written, options).batches.front();
   CHECK(again.errors.values == batch.errors.values);
   CHECK(again.temperatures.values == batch.temperatures.values);
   CHECK(again.errors.names == batch.errors.names);

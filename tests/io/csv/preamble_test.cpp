@@ -2,17 +2,13 @@
 #include "thermfit/io/csv/preamble.hpp"
 
 #include "support/catch.hpp"
+#include "support/read_text.hpp"
 #include "support/scratch_folder.hpp"
 #include "thermfit/io/csv/reader.hpp"
 
 using namespace thermfit;
 
 namespace {
-
-CsvReading read(const std::string& text, const CsvOptions& options = {}) {
-  const ScratchFolder folder;
-  return read_campaign({folder.write("a.csv", text)}, options);
-}
 
 std::string refusal(const std::string& text, const CsvOptions& options = {}) {
   const ScratchFolder folder;
@@ -34,13 +30,13 @@ std::string with_separator(std::string text, char separator) {
 }  // namespace
 
 TEST_CASE("names are found below what was written before them, with any separator, and their line is told", "[io]") {
-  const Batch plain = read(names + rows).batches.front();
+  const Batch plain = read_text(names + rows).batches.front();
   for (const std::string before :
        {"Warm-up test, machine 7\n", "Warm-up\nOperator: x\n\n",
         "Name:,Setup 1\nChannel,Name,Range\n101,Front,C\n102,Rear,C\n\n", "Date: 04.05.2026 08:00:00\nChannels: 4\n",
         "\"Title, with quotes\"\n", "Type K thermocouples (2), probe; PLC\n1\n2\n"})
     for (const char separator : {',', ';', '\t'}) {
-      const CsvReading reading = read(before + with_separator(names + rows, separator));
+      const CsvReading reading = read_text(before + with_separator(names + rows, separator));
       INFO(before << separator);
       CHECK(reading.batches.front().temperatures.values == plain.temperatures.values);
       CHECK(reading.batches.front().errors.values == plain.errors.values);
@@ -49,10 +45,11 @@ TEST_CASE("names are found below what was written before them, with any separato
       CHECK(reading.files.front().dialect.header_line == lines + 1);
       CsvOptions options;
       options.header_line = lines + 1;
-      CHECK(read(before + with_separator(names + rows, separator), options).batches.front().digest == plain.digest);
+      CHECK(read_text(before + with_separator(names + rows, separator), options).batches.front().digest ==
+            plain.digest);
     }
   for (const char* first : {"sep=;\n", "SEP=;\r\n", "\"sep=;\"\n"})
-    CHECK(read(first + with_separator(names + rows, ';')).batches.front().digest == plain.digest);
+    CHECK(read_text(first + with_separator(names + rows, ';')).batches.front().digest == plain.digest);
 }
 
 TEST_CASE("a header line that is not there is an error", "[io]") {
@@ -64,12 +61,12 @@ TEST_CASE("a header line that is not there is an error", "[io]") {
 }
 
 TEST_CASE("units stand below the names, above them, or with a third line of words", "[io]") {
-  const Batch plain = read("time_min,T1,T2,Z [mm]\n" + rows).batches.front();
+  const Batch plain = read_text("time_min,T1,T2,Z [mm]\n" + rows).batches.front();
   for (const char* header :
        {"time,T1,T2,Z\nmin,°C,°C,mm\n", "min,degC,degC,mm\ntime,T1,T2,Z\n",
         "time,T1,T2,Z\nmin,°C,°C,mm\nch0,ch1,ch2,ch3\n", "time,T1,T2,Z\n[MIN],[DegC],[DegC],[MM]\n"}) {
     INFO(header);
-    const Batch batch = read(header + rows).batches.front();
+    const Batch batch = read_text(header + rows).batches.front();
     CHECK(batch.time_s == plain.time_s);
     CHECK(batch.temperatures.values == plain.temperatures.values);
     CHECK(batch.errors.values == plain.errors.values);
@@ -77,14 +74,14 @@ TEST_CASE("units stand below the names, above them, or with a third line of word
 }
 
 TEST_CASE("sums at the end, a word that ends a file and the names again are no rows, and are counted", "[io]") {
-  const Batch plain = read(names + rows).batches.front();
+  const Batch plain = read_text(names + rows).batches.front();
   const std::size_t middle = rows.find('\n') + 1;
   for (const auto& [text, count] : std::vector<std::pair<std::string, std::size_t>>{
            {names + rows + "EOF\n", 1},
            {names + rows + "\nMax,28,24,30\nMin,20,21,0\nMean:,25,23,18\n", 3},
            {names + rows.substr(0, middle) + names + rows.substr(middle), 1},
            {names + rows.substr(0, middle) + "overrun\n" + rows.substr(middle), 1}}) {
-    const CsvReading reading = read(text);
+    const CsvReading reading = read_text(text);
     INFO(text);
     CHECK(reading.batches.front().digest == plain.digest);
     CHECK(reading.files.front().left_out_lines == count);
@@ -104,6 +101,6 @@ TEST_CASE("what instruments write without a reading is a missing value, as are m
     options.missing_marks = {"ERR7", "-999.9"};
     CHECK(refusal(text, options).find("a.csv:4:8 (T2): a value is missing") == 0);
     options.missing = MissingValues::drop;
-    CHECK(read(text, options).batches.front().rows() == 3);
+    CHECK(read_text(text, options).batches.front().rows() == 3);
   }
 }

@@ -4,7 +4,7 @@
 #include <iconv.h>
 
 #include "support/catch.hpp"
-#include "support/scratch_folder.hpp"
+#include "support/read_text.hpp"
 #include "thermfit/io/csv/reader.hpp"
 
 using namespace thermfit;
@@ -12,11 +12,6 @@ using namespace thermfit;
 namespace {
 
 using Names = std::vector<std::string>;
-
-CsvReading read(const std::string& text, const CsvOptions& options = {}) {
-  const ScratchFolder folder;
-  return read_campaign({folder.write("a.csv", text)}, options);
-}
 
 std::string encoded(std::string text, const char* encoding) {
   const iconv_t state = ::iconv_open(encoding, "UTF-8");
@@ -59,10 +54,10 @@ TEST_CASE("a campaign is the same in every encoding, also where it is longer tha
       options.time_column = header.substr(0, header.find('['));
       while (options.time_column.back() == ' ') options.time_column.pop_back();
       const std::string text = made(rows, header);
-      const Batch plain = read(text, options).batches.front();
+      const Batch plain = read_text(text, options).batches.front();
       INFO(encoding << ", " << rows);
       if (std::string(encoding) != "UTF-16") options.encoding = encoding;
-      const Batch batch = read(encoded(text, encoding), options).batches.front();
+      const Batch batch = read_text(encoded(text, encoding), options).batches.front();
       CHECK(batch.digest == plain.digest);
       CHECK(batch.temperatures.names == plain.temperatures.names);
     }
@@ -71,36 +66,37 @@ TEST_CASE("a campaign is the same in every encoding, also where it is longer tha
 TEST_CASE("an encoding that is not known, not said, or not the file's is an error that says what to write", "[io]") {
   CsvOptions options;
   options.encoding = "klingon";
-  CHECK_THROWS_WITH(read("T1\n20\n", options), Catch::Contains("no encoding is called 'klingon'"));
-  CHECK_THROWS_WITH(read("Zeit [s],T1 [\xB0"
-                         "C]\n0,20\n"),
+  CHECK_THROWS_WITH(read_text("T1\n20\n", options), Catch::Contains("no encoding is called 'klingon'"));
+  CHECK_THROWS_WITH(read_text("Zeit [s],T1 [\xB0"
+                              "C]\n0,20\n"),
                     Catch::Contains("CsvOptions::encoding = NAME"));
-  CHECK_THROWS_WITH(read("time,T1\ns,\xB0"
-                         "C\n0,20\n1,21\n"),
+  CHECK_THROWS_WITH(read_text("time,T1\ns,\xB0"
+                              "C\n0,20\n1,21\n"),
                     Catch::Contains("CsvOptions::encoding = NAME"));
   options.encoding = "gb18030";
-  CHECK_THROWS_WITH(read("time_s,T1\xFF\n0,20\n", options), Catch::Contains("no text in gb18030"));
+  CHECK_THROWS_WITH(read_text("time_s,T1\xFF\n0,20\n", options), Catch::Contains("no text in gb18030"));
 }
 
 TEST_CASE("blanks separate where nothing else does, any number of them, told; lost samples are left out", "[io]") {
-  const Batch plain = read("time_s,T1,T2,Z\n0,20,21,-0.5\n60,20.5,21.25,1\n120,21,21.5,2\n").batches.front();
-  CHECK(read("time_s T1 T2 Z\n0 20 21 -0.5\n60 20.5 21.25 1\n120 21 21.5 2\n").batches.front().digest == plain.digest);
-  const CsvReading aligned = read(
+  const Batch plain = read_text("time_s,T1,T2,Z\n0,20,21,-0.5\n60,20.5,21.25,1\n120,21,21.5,2\n").batches.front();
+  CHECK(read_text("time_s T1 T2 Z\n0 20 21 -0.5\n60 20.5 21.25 1\n120 21 21.5 2\n").batches.front().digest ==
+        plain.digest);
+  const CsvReading aligned = read_text(
       "  time_s     T1     T2      Z\n       0  20.00  21.00  -0.50 \n      60  20.50  21.25   1.00\n     120  21.00  "
       "21.50   2.00\n");
   CHECK(aligned.batches.front().digest == plain.digest);
   CHECK(aligned.files.front().dialect.separator == ' ');
   CsvOptions options;
   options.columns = {"time_s", "T1", "T2", "Z"};
-  CHECK(read("0 20 21 -0.5 \n60 20.5 21.25 1 \noverrun\n120 21 21.5 2 \n", options).batches.front().digest ==
+  CHECK(read_text("0 20 21 -0.5 \n60 20.5 21.25 1 \noverrun\n120 21 21.5 2 \n", options).batches.front().digest ==
         plain.digest);
   options.separator = ' ';
-  CHECK(read("0 20 21 -0.5\n60 20.5 21.25 1\n120 21 21.5 2\n", options).batches.front().digest == plain.digest);
-  CHECK_THROWS_AS(read("0 20 21\n60 20.5 21.25 1\n", options), Error);
+  CHECK(read_text("0 20 21 -0.5\n60 20.5 21.25 1\n120 21 21.5 2\n", options).batches.front().digest == plain.digest);
+  CHECK_THROWS_AS(read_text("0 20 21\n60 20.5 21.25 1\n", options), Error);
 }
 
 TEST_CASE("columns without a name or with another's get one, told; a second clock is refused", "[io]") {
-  const CsvReading reading = read(",time_s,Temp,Temp,Z,,\n0,0,20,21,1,,\n1,60,21,22,2,,\n", [] {
+  const CsvReading reading = read_text(",time_s,Temp,Temp,Z,,\n0,0,20,21,1,,\n1,60,21,22,2,,\n", [] {
     CsvOptions options;
     options.temperatures = {"Temp", "Temp.2"};
     return options;
@@ -108,17 +104,17 @@ TEST_CASE("columns without a name or with another's get one, told; a second cloc
   CHECK(reading.batches.front().temperatures.names == Names{"Temp", "Temp.2"});
   CHECK(reading.batches.front().inputs.names == Names{"column1"});
   CHECK(reading.files.front().roles.made_up == Names{"column1 (no name)", "Temp.2 (Temp again)", "column6 (no name)"});
-  CHECK_THROWS_WITH(read("Time,T1,Time,T2\n0,20,1,20\n"), Catch::Contains("one clock for all channels"));
+  CHECK_THROWS_WITH(read_text("Time,T1,Time,T2\n0,20,1,20\n"), Catch::Contains("one clock for all channels"));
 }
 
 TEST_CASE("the minus of typesetters is a minus", "[io]") {
-  CHECK(read("time_s,T1,Z\n0,20,\xE2\x88\x92"
-             "0.25\n")
+  CHECK(read_text("time_s,T1,Z\n0,20,\xE2\x88\x92"
+                  "0.25\n")
             .batches.front()
             .errors.values(0, 0) == -0.25);
-  CHECK(read("time_s;T1;Z\n0;20,5;\xE2\x88\x92"
-             "0,25\n")
+  CHECK(read_text("time_s;T1;Z\n0;20,5;\xE2\x88\x92"
+                  "0,25\n")
             .batches.front()
             .errors.values(0, 0) == -0.25);
-  CHECK_THROWS_AS(read("time_s,T1,Z\n0,20,\xE2\x88\x92-1\n"), Error);
+  CHECK_THROWS_AS(read_text("time_s,T1,Z\n0,20,\xE2\x88\x92-1\n"), Error);
 }

@@ -13,6 +13,18 @@
 
 namespace thermfit {
 
+namespace detail {
+
+inline std::string separator_name(char separator) {
+  return separator == ','   ? "comma"
+         : separator == ';' ? "semicolon"
+         : separator == '|' ? "bar"
+         : separator == ' ' ? "blank"
+                            : "tab";
+}
+
+}  // namespace detail
+
 /// How a file spells its table, as found or as told.
 struct CsvDialect {
   char separator = ',';                    ///< `,` `;` tab or `|`
@@ -33,11 +45,7 @@ struct CsvDialect {
 
   /// "semicolon-separated, decimal comma, unit row".
   std::string description() const {
-    std::string text = separator == ','   ? "comma"
-                       : separator == ';' ? "semicolon"
-                       : separator == '|' ? "bar"
-                       : separator == ' ' ? "blank"
-                                          : "tab";
+    std::string text = detail::separator_name(separator);
     text += decimal_mark == ',' ? "-separated, decimal comma" : "-separated, decimal point";
     if (unit_row) text += ", unit row";
     if (header_line > 0) text += ", names in line " + std::to_string(header_line) + ", those above left out";
@@ -51,14 +59,6 @@ struct CsvDialect {
 };
 
 namespace detail {
-
-inline std::string separator_name(char separator) {
-  return separator == ','   ? "comma"
-         : separator == ';' ? "semicolon"
-         : separator == '|' ? "bar"
-         : separator == ' ' ? "blank"
-                            : "tab";
-}
 
 /// Looks like a decimal number written with `mark`, in digits only but for a sign, the mark and an exponent.
 inline bool is_decimal_with(std::string_view text, char mark) {
@@ -119,7 +119,7 @@ inline SeparatorEvidence weigh_separator(char separator, const CsvEvidence& evid
     for (const CsvField& field : fields) {
       if (is_missing(field.text)) continue;
       ++found.filled;
-      found.numbers += parse_field(field.text, '.') || parse_field(field.text, ',') || parse_date_time(field.text);
+      found.numbers += is_number(field.text) || parse_date_time(field.text);
     }
   }
   return found;
@@ -136,7 +136,7 @@ inline bool blanks_separate(const CsvEvidence& evidence, std::size_t names_given
     if (fields.size() != wanted || wanted < 2) return false;
     if (i > 0 || names_given > 0)
       for (const CsvField& field : fields)
-        if (!parse_field(field.text, '.') && !parse_field(field.text, ',') && !is_missing(field.text)) return false;
+        if (!is_number(field.text) && !is_missing(field.text)) return false;
   }
   return evidence.lines.size() > 1;
 }

@@ -126,6 +126,9 @@ inline std::optional<double> parse_field(std::string_view text, char mark) {
   return parse_number({buffer, text.size()});
 }
 
+/// Whether a field is a number, with a point or a comma.
+inline bool is_number(std::string_view text) { return parse_field(text, '.') || parse_field(text, ','); }
+
 /// Reads a plain fixed-point number at `begin` and moves `begin` behind it. False, with `begin` anywhere, for whatever
 /// needs more care: exponents, more than 53 bits, signs with a plus, no digit. The quotient of two integers that
 /// doubles hold is rounded once, hence equal to what from_chars gives (Clinger's fast path).

@@ -73,7 +73,7 @@ inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::st
   bool known = false;
   for (const CsvField& field : fields) {
     std::string_view text = field.text;
-    if (parse_field(text, '.') || parse_field(text, ',')) return false;
+    if (is_number(text)) return false;
     if (text.size() > 1 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
       text = trim(text.substr(1, text.size() - 2));
     units.emplace_back(text == "-" ? std::string_view() : text);
@@ -152,8 +152,7 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
                   [](const CsvColumn& column) { return column.title.empty() || find_unit(column.title); }) &&
       !split_line(evidence.lines[1].text, dialect.separator, fields) && fields.size() == units.size() &&
       std::none_of(fields.begin(), fields.end(), [&](const CsvField& field) {
-        return field.text.empty() || parse_field(field.text, '.') || parse_field(field.text, ',') ||
-               parse_stamp(field.text);
+        return field.text.empty() || is_number_or_stamp(field.text);
       })) {  // units above the names
     dialect.unit_row = true;
     header.line = evidence.lines[1].number;
@@ -179,10 +178,8 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
     // A third line of words, as of channel numbers, below names and units.
     if (evidence.lines.size() > 3 && !split_line(evidence.lines[2].text, dialect.separator, fields) &&
         fields.size() == header.columns.size() + header.empty_last_column &&
-        std::none_of(fields.begin(), fields.end(), [&](const CsvField& field) {
-          return is_missing(field.text) || parse_field(field.text, '.') || parse_field(field.text, ',') ||
-                 parse_stamp(field.text);
-        }))
+        std::none_of(fields.begin(), fields.end(),
+                     [&](const CsvField& field) { return is_missing(field.text) || is_number_or_stamp(field.text); }))
       header.content_lines = 3;
   }
   return header;

@@ -23,7 +23,7 @@ inline bool is_number_line(const std::vector<CsvField>& fields) {
   std::size_t filled = 0, numbers = 0;
   for (const CsvField& field : fields) {
     if (is_missing(field.text)) continue;
-    const bool number = parse_field(field.text, '.') || parse_field(field.text, ',') || parse_stamp(field.text);
+    const bool number = is_number_or_stamp(field.text);
     if (filled++ == 0 && !number) return false;
     numbers += number;
   }
@@ -34,7 +34,7 @@ inline bool is_number_line(const std::vector<CsvField>& fields) {
 inline bool is_name_line(const std::vector<CsvField>& fields) {
   std::size_t filled = 0;
   for (const CsvField& field : fields) {
-    if (parse_field(field.text, '.') || parse_field(field.text, ',') || parse_stamp(field.text)) return false;
+    if (is_number_or_stamp(field.text)) return false;
     filled += !field.text.empty();
   }
   return 2 * filled >= fields.size() && filled > 1;

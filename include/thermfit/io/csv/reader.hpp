@@ -179,10 +179,6 @@ inline void make_names_differ(Campaign& batches) {
   }
 }
 
-}  // namespace detail
-
-namespace detail {
-
 inline bool is_like(const std::string& glob, const std::string& path) {
   return matches_glob(glob, path) || matches_glob(glob, path.substr(path.rfind('/') + 1)) ||
          matches_glob(glob, stem(path));

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "thermfit/io/csv/date_time.hpp"
+#include "thermfit/io/csv/field.hpp"
 
 namespace thermfit {
 
@@ -159,6 +160,9 @@ inline std::optional<Stamp> parse_stamp(std::string_view text) {
   if (!take_time(text, stamp) || !text.empty()) return std::nullopt;
   return stamp;
 }
+
+/// Whether a field is what rows hold and names are not: a number or a stamp.
+inline bool is_number_or_stamp(std::string_view text) { return is_number(text) || parse_stamp(text); }
 
 /// The instant of a stamp: seconds since 1970 where it has a date, since midnight where it has none. Nothing for a date
 /// that does not exist in that order.
