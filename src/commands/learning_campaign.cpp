@@ -86,10 +86,7 @@ std::string fault_text(const Campaign& campaign, const FindingGroup& group) {
   if (group.batches > 1) text += std::to_string(group.batches) + " batches, worst ";
   text += batch.name;
   const bool whole = finding->first_row == 0 && finding->last_row + 1 >= batch.rows();
-  if (!whole && group.rule != FindingRule::unit)
-    text += " row " + std::to_string(batch.number_of(finding->first_row)) +
-            (finding->last_row > finding->first_row ? "-" + std::to_string(batch.number_of(finding->last_row)) : "");
-  return text;
+  return whole || group.rule == FindingRule::unit ? text : text + " row " + rows_text(*finding, batch);
 }
 
 /// The faults behind `reasons`, worst first, as many as a line holds.

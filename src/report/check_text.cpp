@@ -15,11 +15,6 @@
 namespace thermfit::cli {
 namespace {
 
-std::string rows_text(const Finding& one, const Batch& batch) {
-  const std::string first = std::to_string(batch.number_of(one.first_row));
-  return one.first_row == one.last_row ? first : first + "-" + std::to_string(batch.number_of(one.last_row));
-}
-
 std::string range_text(const Channels& channels) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (Index c = 0; c < channels.count(); ++c)

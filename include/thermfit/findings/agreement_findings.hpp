@@ -10,6 +10,7 @@
 #include "thermfit/findings/disagreement.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/series_scale.hpp"
+#include "thermfit/findings/sound_rows.hpp"
 
 namespace thermfit {
 
@@ -93,13 +94,10 @@ void add_agreement_findings(const Campaign& campaign, std::vector<std::vector<Fi
   std::vector<std::vector<double>> shakes(static_cast<std::size_t>(channels));
   for (std::size_t b = 0; b < campaign.size(); ++b) {
     const Batch& batch = campaign[b];
-    std::vector<bool> counts(static_cast<std::size_t>(batch.rows()), true);
+    const std::vector<bool> counts = detail::sound_rows(batch, findings[b], false);
     for (const Finding& one : findings[b]) {
       const Index c = batch.temperatures.find(one.channel);
       if (c < 0) continue;
-      const bool rows = one.rule == FindingRule::spike || one.rule == FindingRule::impossible;
-      if (rows)
-        for (Index row = one.first_row; row <= one.last_row; ++row) counts[static_cast<std::size_t>(row)] = false;
       const bool whole =
           one.rule == FindingRule::constant || one.rule == FindingRule::stuck || one.rule == FindingRule::unit;
       if (whole && std::find(known[b].begin(), known[b].end(), c) == known[b].end()) known[b].push_back(c);

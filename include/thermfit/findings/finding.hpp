@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "thermfit/batch/batch.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
@@ -53,5 +54,12 @@ struct Finding {
   std::string unit;     ///< of `figure` and `limit`: "K", "um", "s", "rows", …
   std::string note;     ///< what it means, in a few words
 };
+
+/// "40" or "40-42": the rows of a finding by their numbers in the file of its batch. Allocates the text.
+inline std::string rows_text(const Finding& finding, const Batch& batch) {
+  const std::string first = std::to_string(batch.number_of(finding.first_row));
+  return finding.first_row == finding.last_row ? first
+                                               : first + '-' + std::to_string(batch.number_of(finding.last_row));
+}
 
 }  // namespace thermfit

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "thermfit/findings/campaign_findings.hpp"
+#include "thermfit/findings/unfit.hpp"
 
 namespace thermfit {
 
@@ -35,31 +36,22 @@ inline double excess(const Finding& one) {
   return std::isfinite(ratio) ? ratio : 0;
 }
 
-/// What a rule costs whoever does not know, most first: the batch, the channel, readings, nothing yet.
+/// What a rule costs whoever does not know, most first: the batch, the channel, readings, nothing yet. Numbers that no
+/// machine can have come before other readings, and where an error stands is as good as its channel.
 inline int gravity(FindingRule rule) {
-  switch (rule) {
-    case FindingRule::copy:
+  if (rule == FindingRule::level) return 1;
+  switch (unfit(rule)) {
+    case Unfit::batch:
       return 0;
-    case FindingRule::unit:
-    case FindingRule::sign:
-    case FindingRule::constant:
-    case FindingRule::level:
-    case FindingRule::dead:
-    case FindingRule::swapped:
-    case FindingRule::gain:
-    case FindingRule::drift:
-    case FindingRule::disagrees:
+    case Unfit::channel:
       return 1;
-    case FindingRule::impossible:
-      return 2;
-    case FindingRule::stuck:
-    case FindingRule::saturated:
-    case FindingRule::spike:
-    case FindingRule::jump:
-      return 3;
-    default:
-      return 4;
+    case Unfit::rows:
+    case Unfit::after:
+      return rule == FindingRule::impossible ? 2 : 3;
+    case Unfit::nothing:
+      break;
   }
+  return 4;
 }
 
 }  // namespace detail

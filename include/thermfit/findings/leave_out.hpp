@@ -12,6 +12,7 @@
 #include "thermfit/batch/kept_rows.hpp"
 #include "thermfit/findings/campaign_findings.hpp"
 #include "thermfit/findings/series_scale.hpp"
+#include "thermfit/findings/unfit.hpp"
 #include "thermfit/statistics/course_start.hpp"
 
 namespace thermfit {
@@ -41,44 +42,6 @@ struct LeaveOut {
   /// Whether all of the campaign is kept. Does not allocate.
   bool nothing() const { return reasons.empty(); }
 };
-
-namespace detail {
-
-/// What a finding says about the data of its channel.
-enum class Unfit {
-  nothing,  ///< worth knowing, but the readings are what they are
-  rows,     ///< first_row … last_row are no readings of the channel
-  after,    ///< what follows last_row has another zero than what precedes first_row
-  channel,  ///< the channel is not what it says, in the whole batch
-  batch     ///< the batch is no experiment of its own
-};
-
-inline Unfit unfit(FindingRule rule) {
-  switch (rule) {
-    case FindingRule::spike:
-    case FindingRule::impossible:
-    case FindingRule::stuck:
-    case FindingRule::saturated:
-      return Unfit::rows;
-    case FindingRule::jump:
-      return Unfit::after;
-    case FindingRule::drift:
-    case FindingRule::gain:
-    case FindingRule::dead:
-    case FindingRule::swapped:
-    case FindingRule::disagrees:
-    case FindingRule::sign:
-    case FindingRule::constant:
-    case FindingRule::unit:
-      return Unfit::channel;
-    case FindingRule::copy:
-      return Unfit::batch;
-    default:
-      return Unfit::nothing;
-  }
-}
-
-}  // namespace detail
 
 /// What of `campaign` is better left out for the `findings` that find_faults(Campaign) made of it.
 ///

@@ -9,6 +9,7 @@
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/series_scale.hpp"
+#include "thermfit/findings/sound_rows.hpp"
 
 namespace thermfit {
 
@@ -43,17 +44,15 @@ void add_sign_findings(const Campaign& campaign, std::vector<std::vector<Finding
     MatrixX<Scalar> all_squares = MatrixX<Scalar>::Zero(points, points);
     for (std::size_t b = 0; b < count; ++b) {
       const Batch& batch = campaign[b];
-      std::vector<bool> bad(static_cast<std::size_t>(batch.rows()), false);
-      for (const Finding& one : findings[b])
-        if (one.rule == FindingRule::spike || one.rule == FindingRule::impossible)
-          for (Index row = one.first_row; row <= one.last_row; ++row) bad[static_cast<std::size_t>(row)] = true;
+      const std::vector<bool> sound = detail::sound_rows(batch, findings[b], true);
       const MatrixX<Scalar>& temperatures = batch.temperatures.values;
       const MatrixX<Scalar>& errors = batch.errors.values;
       MatrixX<Scalar> x(batch.rows(), points);
       VectorX<Scalar> y(batch.rows());
       Index rows = 0;
       for (Index row = 0; row < batch.rows(); ++row) {
-        if (bad[static_cast<std::size_t>(row)] || !temperatures.row(row).allFinite() || !std::isfinite(errors(row, e)))
+        if (!sound[static_cast<std::size_t>(row)] || !temperatures.row(row).allFinite() ||
+            !std::isfinite(errors(row, e)))
           continue;
         x.row(rows) = temperatures.row(row);
         y(rows++) = errors(row, e);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -11,6 +10,7 @@
 #include "thermfit/findings/course.hpp"
 #include "thermfit/findings/finding.hpp"
 #include "thermfit/findings/series_scale.hpp"
+#include "thermfit/statistics/course_start.hpp"
 
 namespace thermfit {
 
@@ -191,9 +191,7 @@ inline std::vector<Finding> transient_findings(const Series& series, const Serie
 inline double first_reading_off_K(const Series& series, const TransientLimits& limits = {}) {
   const std::vector<double>& x = series.values;
   if (x.size() < 5 || series.rows[4] != 4) return 0;
-  std::array<double, 3> steps{x[2] - x[1], x[3] - x[2], x[4] - x[3]};
-  std::sort(steps.begin(), steps.end());
-  const double trend = steps[1], first = x[1] - x[0];
+  const double trend = x[1] - course_taken_back(x), first = x[1] - x[0];
   const double off_K = std::abs(first - trend);
   return first * trend <= 0 && off_K > limits.jump_of(series_scale(series)) ? off_K : 0;
 }

@@ -53,13 +53,12 @@ WithoutBadCells without_bad_cells(Campaign campaign, DataProblem::Side side, Ind
           value = values(has_before ? before : after, column);
         values(row, column) = value;
       }
-      std::string rows_text = std::to_string(one.first_row + 1);
-      if (one.last_row > one.first_row) rows_text += "-" + std::to_string(one.last_row + 1);
+      const std::string rows_told = rows_text(one, batch);
       const auto known = std::find_if(result.left_out.begin(), result.left_out.end(), [&](const DataProblem& other) {
         return other.batch == batch.name && other.channel == one.channel;
       });
       if (known != result.left_out.end()) {
-        known->note += ", " + rows_text;
+        known->note += ", " + rows_told;
         continue;
       }
       DataProblem told;
@@ -67,7 +66,7 @@ WithoutBadCells without_bad_cells(Campaign campaign, DataProblem::Side side, Ind
       told.batch = batch.name;
       told.channel = one.channel;
       told.rule = std::string(rule_name(one.rule));
-      told.note = rows_text;
+      told.note = rows_told;
       told.side = side;
       told.certain = false;
       result.left_out.push_back(std::move(told));
