@@ -1,7 +1,7 @@
 // The instances of diagnosis/ itself and of its planning that thermfit::compiled holds; what lies below is compiled
 // elsewhere.
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
-#include "thermfit/diagnosis/sides/machine_sides.hpp"
+#include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/diagnosis/where/where.hpp"
 #include "thermfit/findings/findings.hpp"
 #include "thermfit/simulation.hpp"

@@ -1,7 +1,8 @@
 // The instances of diagnosis/outputs/ that thermfit::compiled holds; what lies below is compiled elsewhere.
 #include "thermfit/diagnosis/planning/next_experiment.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
-#include "thermfit/diagnosis/sides/machine_sides.hpp"
+#include "thermfit/diagnosis/sides/compare_clocks.hpp"
+#include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/findings/findings.hpp"
 #include "thermfit/simulation.hpp"
 #include "thermfit/statistics/follows.hpp"

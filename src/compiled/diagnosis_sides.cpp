@@ -11,4 +11,5 @@
 #define THERMFIT_COMPILED_ELSEWHERE
 
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
-#include "thermfit/diagnosis/sides/machine_sides.hpp"
+#include "thermfit/diagnosis/sides/compare_clocks.hpp"
+#include "thermfit/diagnosis/sides/compare_machine.hpp"

@@ -13,7 +13,7 @@
 #include "thermfit/diagnosis/data_problems.hpp"
 #include "thermfit/diagnosis/planning/next_experiment.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
-#include "thermfit/diagnosis/sides/machine_sides.hpp"
+#include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/diagnosis/sides/unlike_sides.hpp"
 #include "thermfit/diagnosis/where/remaining.hpp"
 #include "thermfit/diagnosis/where/transfer.hpp"

@@ -17,6 +17,8 @@
 #include "thermfit/diagnosis/outputs/suspects.hpp"
 #include "thermfit/diagnosis/outputs/views.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
+#include "thermfit/diagnosis/sides/compare_clocks.hpp"
+#include "thermfit/diagnosis/sides/compare_sides.hpp"
 #include "thermfit/diagnosis/sides/unlike_sides.hpp"
 #include "thermfit/statistics/parallel.hpp"
 #include "thermfit/statistics/reading_step.hpp"
