@@ -12,6 +12,7 @@
 #include "thermfit/calibration/start_tolerance.hpp"
 #include "thermfit/diagnosis/outputs/output_sides.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
+#include "thermfit/diagnosis/sides/compare_clocks.hpp"
 #include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/json/machine.hpp"
