@@ -40,21 +40,32 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-bool is_csv_name(const std::string& name) {
-  const auto ends = [&](const std::string& suffix) {
-    return name.size() > suffix.size() && name.compare(name.size() - suffix.size(), std::string::npos, suffix) == 0;
-  };
-  return name.front() != '.' && (ends(".csv") || ends(".csv.gz") || ends(".CSV"));
+/// Whether a name ends in one of `endings`, in any case.
+bool ends_in(const std::string& name, std::initializer_list<std::string_view> endings) {
+  return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) {
+    return name.size() > ending.size() &&
+           std::equal(ending.rbegin(), ending.rend(), name.rbegin(), [](char wanted, char c) {
+             return wanted == (c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c);
+           });
+  });
 }
 
+/// The tables in a folder: its *.csv, or, where it has none, what loggers write under other names.
 std::vector<std::string> files_in(const std::string& folder) {
-  std::vector<std::string> files;
+  std::vector<std::string> files, others;
   std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (is_csv_name(entry->path().filename().string()) && !entry->is_directory(error))
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.front() == '.' || entry->is_directory(error)) continue;
+    if (ends_in(name, {".csv", ".csv.gz"}))
       files.push_back(entry->path().string());
+    else if (ends_in(name, {".txt", ".asc", ".lvm", ".dat", ".tsv"}))
+      others.push_back(entry->path().string());
+  }
   if (error) throw Error(folder, error.message(), "a folder that can be read");
-  if (files.empty()) throw Error(folder, "holds no *.csv or *.csv.gz", "a folder with batches");
+  if (files.empty()) files = std::move(others);
+  if (files.empty())
+    throw Error(folder, "holds no *.csv or *.csv.gz, nor *.txt, *.asc, *.lvm, *.dat, *.tsv", "a folder with batches");
   std::sort(files.begin(), files.end(), natural_less);
   return files;
 }
@@ -88,6 +99,11 @@ char decimal_mark(const Arguments& arguments) {
   if (given == "." || given == ",") return given.front();
   const std::string word = arguments.choice("--decimal", {"auto", "point", "comma"}, "auto");
   return word == "point" ? '.' : word == "comma" ? ',' : '\0';
+}
+
+char thousands(const Arguments& arguments) {
+  const std::string word = arguments.choice("--thousands", {"auto", "comma", "point", "space", "apostrophe"}, "auto");
+  return word == "comma" ? ',' : word == "point" ? '.' : word == "space" ? ' ' : word == "apostrophe" ? '\'' : '\0';
 }
 
 /// `Z=mm`: the last equals sign divides, so that a name may have one.
@@ -142,7 +158,11 @@ std::vector<Option> campaign_options() {
       {"--delimiter", "MARK", "comma, semicolon, tab, bar, or space for any number of blanks (default: from the file)",
        0, false},
       {"--decimal", "MARK", "point or comma (default: from the file)", 0, false},
-      {"--columns", "NAMES", "names of the columns of files without a header line", 0, true},
+      {"--thousands", "MARK",
+       "comma, point, space or apostrophe, where they group thousands (default: from the file where it can be nothing "
+       "else)",
+       0, false},
+      {"--columns", "NAMES", "names of the columns, in place of those of a header line if there is one", 0, true},
       {"--max-errors", "N", "problems told of before giving up (default: 20)", 0, false},
   };
 }
@@ -160,6 +180,7 @@ CsvOptions csv_options(const Arguments& arguments) {
   CsvOptions options;
   options.separator = separator(arguments);
   options.decimal_mark = decimal_mark(arguments);
+  options.thousands = thousands(arguments);
   options.encoding = arguments.value_or("--encoding", "");
   options.columns = arguments.list("--columns");
   options.missing_marks = arguments.list("--missing-marks");

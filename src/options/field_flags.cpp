@@ -22,6 +22,7 @@ const std::vector<FieldFlag>& field_flags() {
   static const std::vector<FieldFlag> table{
       THERMFIT_FLAG(CsvOptions, separator, "--delimiter"),
       THERMFIT_FLAG(CsvOptions, decimal_mark, "--decimal"),
+      THERMFIT_FLAG(CsvOptions, thousands, "--thousands"),
       THERMFIT_FLAG(CsvOptions, columns, "--columns"),
       THERMFIT_FLAG(CsvOptions, encoding, "--encoding"),
       THERMFIT_FLAG(CsvOptions, header_line, "--header-line"),

@@ -90,8 +90,7 @@ const std::vector<Case> cases{
          say_which},
     {"two decimal marks", "time_min;T1;Z\n0;20.5;1,5\n",
      "a.csv:2:8: '1,5' has a comma, and '20.5' (a.csv:2:3) has a point; allowed: one decimal mark in a file; say "
-     "CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point; write numbers without thousands "
-     "separators"},
+     "CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point"},
     {"decimal comma in quotes between commas", "time_min,T1\n0,\"20,5\"\n",
      "a.csv:2:3: '20,5' in a comma-separated file may be a decimal number or grouped thousands; say "
      "CsvOptions::decimal_mark = comma if "
@@ -101,7 +100,7 @@ const std::vector<Case> cases{
      "a.csv:2:3: '1,234' may be a decimal number or grouped thousands, as all its like here; say "
      "CsvOptions::decimal_mark = comma if it "
      "is "
-     "a decimal number; else write thousands without separators"},
+     "a decimal number, or CsvOptions::thousands = comma if '1,234' is a whole number"},
 
     {"one name over text", "T1\nx;y,z\n",
      "a.csv:2:5: 2 fields under 1 name: 'z' is too many; allowed: a field for each name; if the comma is the decimal "
@@ -217,12 +216,13 @@ const std::vector<Case> cases{
      "a.csv:2:3: T1 is '1e400', beyond what a double holds; " + number + "correct the value"},
     {"infinity", "time_min,T1\n0,-Infinity\n",
      "a.csv:2:3: T1 is '-Infinity', an infinite value; " + number + "leave the cell empty if there was no reading"},
-    {"thousands with point and comma", "time_min;T1\n0;1.234,5\n",
-     "a.csv:2:3: T1 is '1.234,5', with thousands separators; " + number + "write it without them"},
-    {"thousands with blanks", "time_min,T1\n0,1 234.5\n",
-     "a.csv:2:3: T1 is '1 234.5', with thousands separators; " + number + "write it without them"},
-    {"thousands with apostrophes", "time_min,T1\n0,1'234.5\n",
-     "a.csv:2:3: T1 is '1'234.5', with thousands separators; " + number + "write it without them"},
+    {"thousands that the start of the file does not show", "time_min,T1\n0,20.5\n1,1'234.5\n",
+     "a.csv:3:3: T1 is '1'234.5', with thousands separators; " + number +
+         "write it without them, or say CsvOptions::thousands = comma, point, space or apostrophe",
+     [](CsvOptions& options) { options.thousands = ','; }},
+    {"one mark twice", "time_min;T1\n0;1,5\n",
+     "a.csv: CsvOptions::thousands and CsvOptions::decimal_mark are the same mark; allowed: two marks",
+     [](CsvOptions& options) { options.thousands = options.decimal_mark = ','; }},
     {"a point among decimal commas", "time_min;T1\n0;20.5\n",
      "a.csv:2:3: T1 is '20.5', a decimal point in a file with decimal comma; allowed: a number such as 20,1; use one "
      "decimal mark, or say CsvOptions::decimal_mark = comma or CsvOptions::decimal_mark = point",
@@ -241,9 +241,18 @@ const std::vector<Case> cases{
        options.separator = ',';
        options.temperatures = {"time_min;T1"};
      }},
-    {"a number with its unit", "time_min,T1\n0,20.5 °C\n",
-     "a.csv:2:3: T1 is '20.5 °C', a number with its unit; " + number +
+    {"a unit behind some numbers only", "time_min,T1\n0,20\n1,20.5 °C\n",
+     "a.csv:3:3: T1 is '20.5 °C', a number with its unit; " + number +
          "write the unit in brackets behind the name of the column"},
+    {"two units behind numbers", "time_min,T1\n0,20 °C\n1,68.5 °F\n",
+     "a.csv:3:3: T1 is '68.5 °F', in °F, the cells before in °C; " + number + "one unit for a column"},
+    {"another unit behind the numbers than behind the name", "time_min,T1 [degF]\n0,20 °C\n",
+     "a.csv:1:10: T1 is in degF, its cells in °C; allowed: one unit for a column"},
+    {"more names than columns", "time_min,T1,Z\n0,20,1\n1,21,2\n",
+     "a.csv:1: names 3 columns, CsvOptions::columns 2; allowed: a name for each of: time_min, T1, Z",
+     [](CsvOptions& options) {
+       options.columns = {"time_min", "T1"};
+     }},
     {"a date-time that is none", "stamp,T1\n2024-05-31T08:00:00,20\n2024-05-32T08:00:00,21\n",
      "a.csv:3:1: stamp is '2024-05-32T08:00:00'; allowed: an ISO 8601 date-time such as 2024-05-31T08:00:00, with a "
      "zone "

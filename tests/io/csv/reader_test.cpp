@@ -156,7 +156,7 @@ TEST_CASE("roles follow the options: globs, order, inputs, no clock", "[io]") {
 }
 
 TEST_CASE("columns of text and empty columns are left out with a note, a typo in a column of numbers is not", "[io]") {
-  const CsvReading reading = read("time_s,T1,state,spare\n0,20,on,\n1,21,off,\n");
+  const CsvReading reading = read("time_s,T1,state,spare\n0,20,warm,\n1,21,cold,\n");
   CHECK(reading.notes({}) == Names{"K01.csv: left out, no numbers: state, spare"});
   CHECK_THROWS_AS(read("time_s,T1,rpm\n0,20,1000\n1,21,fast\n"), Error);
 }

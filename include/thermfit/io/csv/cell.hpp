@@ -8,13 +8,14 @@
 
 #include "thermfit/error.hpp"
 #include "thermfit/io/csv/dialect.hpp"
+#include "thermfit/io/csv/spelled.hpp"
 #include "thermfit/io/units.hpp"
 
 namespace thermfit::detail {
 
 /// Says why a cell is no number, and what to do about it.
 inline Error bad_cell(const std::string& place, const std::string& column, std::string_view text,
-                      const CsvDialect& dialect) {
+                      const CsvDialect& dialect, const CellSpelling& spelling) {
   const std::string found = column + " is " + shown(text);
   const std::string point = dialect.decimal_mark == ',' ? "a number such as 20,1" : "a number such as 20.1";
   const auto explain = [&](const std::string& what, const std::string& remedy) {
@@ -41,7 +42,8 @@ inline Error bad_cell(const std::string& place, const std::string& column, std::
                           bare.find_first_not_of("0123456789., '\xC2\xA0\xE2\x80\x99\xAF") == std::string_view::npos;
   const auto marks = std::count_if(bare.begin(), bare.end(), [](char c) { return c == ',' || c == '.'; });
   if (only_marks && (marks > 1 || bare.find_first_of(" '\xC2\xE2") != std::string_view::npos))
-    return explain("with thousands separators", "write it without them");
+    return explain("with thousands separators",
+                   "write it without them, or say CsvOptions::thousands = comma, point, space or apostrophe");
   if (only_marks && marks == 1)
     return explain(dialect.decimal_mark == ',' ? "a decimal point in a file with decimal comma"
                                                : "a decimal comma in a file with decimal point",
@@ -49,6 +51,10 @@ inline Error bad_cell(const std::string& place, const std::string& column, std::
   if (parse_date_time(text)) return explain("a date-time", "name the clock: CsvOptions::time_column = NAME");
   if (text.find_first_of(";\t|") != std::string_view::npos)
     return explain("", "is the file separated by something else? say CsvOptions::separator");
+  if (!spelling.on.empty()) return explain("neither " + spelling.on + " nor " + spelling.off, "correct the cell");
+  if (const auto parts = split_unit_in_cell(text); parts && !spelling.unit.empty())
+    return explain("in " + std::string(parts->second) + ", the cells before in " + spelling.unit,
+                   "one unit for a column");
   const std::size_t number = bare.find_first_not_of("0123456789.,");
   if (number != std::string_view::npos && number > 0 && find_unit(trim(bare.substr(number))))
     return explain("a number with its unit", "write the unit in brackets behind the name of the column");

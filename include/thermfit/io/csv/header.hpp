@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "thermfit/io/csv/dialect.hpp"
+#include "thermfit/io/csv/preamble.hpp"
 #include "thermfit/io/csv/stamp.hpp"
 #include "thermfit/io/csv/title.hpp"
+#include "thermfit/io/nearest.hpp"
 #include "thermfit/io/problems.hpp"
 #include "thermfit/io/units.hpp"
 
@@ -47,6 +49,8 @@ struct CsvHeader {
   std::vector<CsvColumn> columns;
   std::size_t line = 0;              ///< of the names; 0 when they were given
   std::size_t content_lines = 0;     ///< lines it takes: names, unit row
+  bool given = false;                ///< the names are CsvOptions::columns
+  std::string replaced;              ///< the line of names that those given stand for; empty without one
   std::vector<std::string> made_up;  ///< "Temp.2 (Temp again)": names that the file does not give
   bool empty_last_column = false;    ///< rows and header end in a separator
 };
@@ -77,7 +81,7 @@ inline bool is_unit_row(const std::vector<CsvField>& fields, std::vector<std::st
     if (text.size() > 1 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
       text = trim(text.substr(1, text.size() - 2));
     units.emplace_back(text == "-" ? std::string_view() : text);
-    known = known || find_unit(text).has_value();
+    known = known || (find_unit(text) && !is_spelled_number(field.text));  // 20 °C is no unit, 0.1 um beside others is
   }
   return known;
 }
@@ -106,6 +110,7 @@ inline std::vector<CsvColumn> columns_in(std::string_view line, std::size_t numb
 
 inline CsvHeader names_given(const CsvOptions& options) {
   CsvHeader header;
+  header.given = true;
   for (const std::string& name : options.columns) header.columns.push_back(column_of({name, 0, false}));
   keep_names_apart(header.columns);
   return header;
@@ -133,8 +138,7 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
   header.content_lines = 1;
   header.columns = columns_in(first.text, first.number, dialect.separator, name);
   if (std::all_of(header.columns.begin(), header.columns.end(), [&](const CsvColumn& column) {
-        return is_missing(column.title) || parse_field(column.title, dialect.decimal_mark) ||
-               parse_date_time(column.title);
+        return is_missing(column.title) || is_spelled_number(column.title) || parse_stamp(column.title);
       }))
     throw problem(place(name, first.number), {"numbers where the names of the columns should be"}, {"a header line"},
                   {"add one, or name the columns: CsvOptions::columns = NAME,NAME,…"});
@@ -185,12 +189,44 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
   return header;
 }
 
+/// Puts the names given over those of a line of names that is there, whose units stay where none are given. Throws when
+/// there are more or fewer.
+inline CsvHeader names_over(CsvHeader header, const CsvOptions& options, const std::string& name) {
+  CsvHeader given = names_given(options);
+  std::vector<std::string> titles;
+  for (const CsvColumn& column : header.columns) titles.push_back(visible_name(column.title));
+  if (given.columns.size() != header.columns.size())
+    throw problem(place(name, header.line),
+                  {"names ", std::to_string(header.columns.size()), " columns, CsvOptions::columns ",
+                   std::to_string(given.columns.size())},
+                  {"a name for each of: ", name_list(titles)});
+  for (std::size_t c = 0; c < given.columns.size(); ++c) {
+    CsvColumn& column = given.columns[c];
+    column.position = header.columns[c].position;
+    if (column.unit.empty()) column.unit = header.columns[c].unit;
+  }
+  given.line = header.line;
+  given.content_lines = header.content_lines;
+  given.empty_last_column = header.empty_last_column;
+  given.replaced = std::to_string(header.line) + ": " + name_list(titles);
+  return given;
+}
+
+/// Whether the first line holds names although names are given: the options say which line does, or it has words only.
+inline bool has_names(const CsvEvidence& evidence, char separator, const CsvOptions& options) {
+  if (options.columns.empty() || options.header_line > 0) return true;
+  std::vector<CsvField> fields;
+  return !evidence.lines.empty() && !split_line(evidence.lines.front().text, separator, fields) && is_name_line(fields);
+}
+
 /// The names and units of the columns, from the options or from the first content lines.
 inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, const CsvOptions& options,
                              const std::string& name) {
   if (evidence.lines.empty() && options.columns.empty())
     throw problem(name, {"has no line with content"}, {"a header line and rows of numbers"});
-  CsvHeader header = options.columns.empty() ? names_read(evidence, dialect, name) : names_given(options);
+  CsvHeader header =
+      has_names(evidence, dialect.separator, options) ? names_read(evidence, dialect, name) : names_given(options);
+  if (header.line > 0 && !options.columns.empty()) header = names_over(std::move(header), options, name);
   if (header.columns.size() > options.max_columns)
     throw problem(place(name, header.line), {std::to_string(header.columns.size()), " columns"},
                   {"at most ", std::to_string(options.max_columns)},
@@ -199,8 +235,8 @@ inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, c
   std::map<std::string, std::size_t> first_of_name;
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const CsvColumn& column = header.columns[c];
-    const std::string at = header.line == 0 ? "CsvOptions::columns" : place(name, header.line, column.position);
-    const bool given = header.line == 0;
+    const bool given = header.given;
+    const std::string at = given ? "CsvOptions::columns" : place(name, header.line, column.position);
     if (column.name.empty() && given)
       problems.add(problem(at, {"column ", std::to_string(c + 1), " has no name"}, {"a name for each column"}));
     const auto [before, fresh] = first_of_name.emplace(column.name, c + 1);

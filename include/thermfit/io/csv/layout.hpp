@@ -14,18 +14,21 @@ namespace thermfit {
 
 /// What the columns of a file mean: names by role, in the order of the file or of the options that chose them.
 struct CsvRoles {
-  std::string time;                       ///< empty when there is none
-  std::string batch;                      ///< empty when the file is one batch
-  std::vector<std::string> temperatures,  ///< temperature points, whose values are read in degC
-      errors,                             ///< thermal errors, whose values are read in um
-      inputs;                             ///< other columns of numbers, whose values are left as written
-  std::vector<std::string> ignored;       ///< text, empty, or not asked for
-  std::vector<std::string> converted;     ///< "T1 from degF"
-  std::vector<std::string> contradicted;  ///< "Z in mm, its title says um": CsvOptions::units against the file
-  std::vector<std::string> nearly;        ///< "t1 (not T1)": an input whose name is nearly that of another role
-  std::vector<std::string> made_up;       ///< "column1 (no name)", "Temp.2 (Temp again)"
-  std::string clock;                      ///< how the clock is read, where that is not plain
-  bool assumed_minutes = false;           ///< nobody said what the clock counts
+  std::string time;                         ///< empty when there is none
+  std::string batch;                        ///< empty when the file is one batch
+  std::vector<std::string> temperatures,    ///< temperature points, whose values are read in degC
+      errors,                               ///< thermal errors, whose values are read in um
+      inputs;                               ///< other columns of numbers, whose values are left as written
+  std::vector<std::string> ignored;         ///< text, empty, or not asked for
+  std::vector<std::string> converted;       ///< "T1 from degF"
+  std::vector<std::string> contradicted;    ///< "Z in mm, its title says um": CsvOptions::units against the file
+  std::vector<std::string> nearly;          ///< "t1 (not T1)": an input whose name is nearly that of another role
+  std::vector<std::string> made_up;         ///< "column1 (no name)", "Temp.2 (Temp again)"
+  std::vector<std::string> spelled;         ///< "T1 in °C", "coolant as on (1) or off (0)": what cells say of numbers
+  std::vector<std::string> may_be_grouped;  ///< text that would be numbers if thousands were grouped
+  std::string replaced;                     ///< names of the file that were replaced by those given
+  std::string clock;                        ///< how the clock is read, where that is not plain
+  bool assumed_minutes = false;             ///< nobody said what the clock counts
 };
 
 namespace detail {
@@ -54,6 +57,7 @@ struct CsvLayout {
   CsvClock clock;
   std::vector<CsvSlot> slots;  ///< one a column of the file
   std::vector<CsvColumn> columns;
+  std::vector<CellSpelling> spellings;  ///< of the cells, one a column
 };
 
 /// `*` stands for any text, `?` for one character.
@@ -82,6 +86,8 @@ class LayoutMaker {
       : header_(header), contents_(std::move(contents)), options_(options), name_(std::move(name)) {
     layout_.columns = header.columns;
     layout_.roles.made_up = header.made_up;
+    layout_.roles.replaced = header.replaced;
+    for (const ColumnContent& content : contents_) layout_.spellings.push_back(content.spelling);
     layout_.slots.resize(header.columns.size() + header.empty_last_column);
     if (header.empty_last_column) layout_.slots.back().role = CsvRole::empty;
     taken_.resize(header.columns.size());
@@ -107,6 +113,8 @@ class LayoutMaker {
                layout_.roles.inputs, std::nullopt);
     for (std::size_t c = 0; c < taken_.size(); ++c) {
       if (taken_[c].empty()) layout_.roles.ignored.push_back(column(c).title);
+      if (taken_[c].empty() && contents_[c].may_be_grouped) layout_.roles.may_be_grouped.push_back(column(c).title);
+      note_spelling(c);
       if (taken_[c] == "an input") note_nearly(c);
     }
     require_units_used();
@@ -116,7 +124,7 @@ class LayoutMaker {
  private:
   const CsvColumn& column(std::size_t c) const { return header_.columns[c]; }
   std::string place_of(std::size_t c) const {
-    return header_.line == 0 ? "CsvOptions::columns" : place(name_, header_.line, column(c).position);
+    return header_.given ? "CsvOptions::columns" : place(name_, header_.line, column(c).position);
   }
 
   std::string take(std::size_t c, const std::string& as) {
@@ -229,7 +237,7 @@ class LayoutMaker {
 
   /// The unit of a column: what the options say, else what the file says.
   std::string unit_of(std::size_t c, Quantity quantity) {
-    const std::string& in_file = column(c).unit;
+    const std::string in_file = unit_in_file(c);
     for (std::size_t u = 0; u < options_.units.size(); ++u) {
       const auto& [pattern, text] = options_.units[u];
       const auto said = find_unit(text);
@@ -244,6 +252,17 @@ class LayoutMaker {
       return text;
     }
     return in_file;
+  }
+
+  /// What the file says: behind or below the name, or behind each number.
+  std::string unit_in_file(std::size_t c) const {
+    const std::string &with_name = column(c).unit, &with_numbers = contents_[c].spelling.unit;
+    if (with_name.empty() || with_numbers.empty()) return with_name.empty() ? with_numbers : with_name;
+    const auto one = find_unit(with_name), other = find_unit(with_numbers);
+    if (with_name != with_numbers && !(one && other && one->is_same_as(*other)))
+      throw problem(place_of(c), {column(c).name, " is in ", with_name, ", its cells in ", with_numbers},
+                    {"one unit for a column"});
+    return with_name;
   }
 
   static std::string all_units() {
@@ -266,6 +285,16 @@ class LayoutMaker {
       throw problem(name_, {"no column ", shown(pattern), " (CsvOptions::units)", did_you_mean(pattern, names())},
                     {name_list(names())});
     }
+  }
+
+  /// Says what the cells of a column that is used say of their numbers.
+  void note_spelling(std::size_t c) {
+    const CellSpelling& spelling = contents_[c].spelling;
+    const CsvRole role = layout_.slots[c].role;
+    if (role != CsvRole::value && role != CsvRole::time) return;
+    if (!spelling.unit.empty()) layout_.roles.spelled.push_back(layout_.columns[c].name + " in " + spelling.unit);
+    if (!spelling.on.empty())
+      layout_.roles.spelled.push_back(layout_.columns[c].name + " " + spelling.on + " as 1, " + spelling.off + " as 0");
   }
 
   /// Says of an input that its name is nearly that of a temperature or thermal error: but for case and blanks.

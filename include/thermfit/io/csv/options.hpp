@@ -36,8 +36,9 @@ struct CsvUnit {
 struct CsvOptions {
   char separator = 0;                      ///< `,` `;` tab, `|`, or a blank for any number of them; 0: from the file
   char decimal_mark = 0;                   ///< `.` or `,`; 0: from the file
+  char thousands = 0;                      ///< what groups them: `.` `,` `'` or a blank; 0: from the file
   std::string encoding;                    ///< as iconv calls it; empty: UTF-8, or UTF-16 where a mark says so
-  std::vector<std::string> columns;        ///< names for a file that has no header line
+  std::vector<std::string> columns;        ///< names, in place of those of a header line if there is one
   std::size_t header_line = 0;             ///< of the names, from 1; 0: the first, or the one above the rows
   std::vector<std::string> missing_marks;  ///< cells without a reading, besides those that instruments write
   std::string time_column;                 ///< empty: by name or ISO 8601 content; "none": no time

@@ -23,7 +23,7 @@ inline bool is_number_line(const std::vector<CsvField>& fields) {
   std::size_t filled = 0, numbers = 0;
   for (const CsvField& field : fields) {
     if (is_missing(field.text)) continue;
-    const bool number = is_number_or_stamp(field.text);
+    const bool number = is_spelled_number(field.text) || parse_stamp(field.text);
     if (filled++ == 0 && !number) return false;
     numbers += number;
   }
@@ -32,27 +32,29 @@ inline bool is_number_line(const std::vector<CsvField>& fields) {
 
 /// A line that may hold names: no number among its fields, and something in most of them.
 inline bool is_name_line(const std::vector<CsvField>& fields) {
-  std::size_t filled = 0;
+  std::size_t filled = 0, words = 0;
   for (const CsvField& field : fields) {
     if (is_number_or_stamp(field.text)) return false;
     filled += !field.text.empty();
+    words += !is_missing(field.text);
   }
-  return 2 * filled >= fields.size() && filled > 1;
+  return 2 * filled >= fields.size() && filled > 1 && 2 * words > filled;
 }
 
 /// How many content lines stand before the names: 0 where the first line has as many fields as the rows, and where no
 /// line right above the rows can be their names. The rows are the longest run of lines of numbers with one count of
-/// fields; three are needed.
-inline std::size_t lines_before_names(const CsvEvidence& evidence, char separator_told) {
+/// fields; three are needed. Where `names_given` names are given, so many fields are, and the rows need no names.
+inline std::size_t lines_before_names(const CsvEvidence& evidence, char separator_told, std::size_t names_given = 0) {
   std::size_t best_run = 2, before = 0;
   std::vector<CsvField> fields;
-  for (const char separator : {',', ';', '\t'}) {
-    if (separator_told && separator != separator_told) continue;
+  for (const char separator : {',', ';', '\t', ' '}) {
+    if (separator_told ? separator != separator_told : separator == ' ') continue;
     std::size_t begin = 0, count = 0, first_fields = 0;
-    std::vector<std::size_t> counts;
+    std::vector<std::size_t> counts, with_empty;
     std::vector<char> kinds;  // n: numbers, t: names
     for (const auto& line : evidence.lines) {
       const bool broken = split_line(line.text, separator, fields).has_value();
+      with_empty.push_back(fields.size());
       while (!broken && fields.size() > 1 && fields.back().text.empty()) fields.pop_back();
       counts.push_back(broken ? 0 : fields.size());
       kinds.push_back(broken ? '?' : is_number_line(fields) ? 'n' : is_name_line(fields) ? 't' : '?');
@@ -61,12 +63,13 @@ inline std::size_t lines_before_names(const CsvEvidence& evidence, char separato
     for (std::size_t i = 0; i < counts.size(); ++i) {
       count = kinds[i] != 'n' ? 0 : count > 0 && counts[i] == counts[i - 1] ? count + 1 : 1;
       if (count == 1) begin = i;
-      if (count <= best_run || begin == 0) continue;
+      if (count <= best_run || begin == 0 || (names_given > 0 && counts[begin] != names_given)) continue;
       std::size_t names = begin;
       while (names > 0 && kinds[names - 1] == 't' && counts[names - 1] == counts[begin]) --names;
-      if (names == begin && kinds[begin - 1] == 't' && counts[begin - 1] == counts[begin] + 1)
-        --names;  // a last column unused
-      if (names == begin) continue;
+      if (names == begin && kinds[begin - 1] == 't' &&
+          (counts[begin - 1] == counts[begin] + 1 || with_empty[begin - 1] == with_empty[begin]))
+        --names;  // a last column unused, or without a name
+      if (names == begin && names_given == 0) continue;
       best_run = count;
       before = first_fields == counts[begin] && kinds.front() == 't' ? 0 : names;
     }

@@ -48,10 +48,9 @@ inline Channels channels(const std::vector<std::string>& names, const GrowingBat
 
 inline std::string stem(const std::string& path) {
   std::string name = path.substr(path.rfind('/') + 1);  // npos + 1 is 0
-  for (const char* suffix : {".gz", ".csv", ".CSV", ".txt", ".tsv"})
-    if (name.size() > std::string_view(suffix).size() &&
-        name.compare(name.size() - std::string_view(suffix).size(), std::string::npos, suffix) == 0)
-      name.erase(name.size() - std::string_view(suffix).size());
+  for (const std::string_view suffix : {".gz", ".csv", ".txt", ".tsv", ".asc", ".lvm", ".dat"})
+    if (name.size() > suffix.size() && lower_case(name.substr(name.size() - suffix.size())) == suffix)
+      name.erase(name.size() - suffix.size());
   return name;
 }
 
@@ -293,6 +292,13 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
     if (file.roles.assumed_minutes)
       add(file, file.roles.time + " names no unit: minutes (CsvOptions::time_unit tells another)");
     if (!file.roles.clock.empty()) add(file, file.roles.clock + " (CsvOptions::time_format = FORMAT tells another)");
+    if (!file.roles.replaced.empty())
+      add(file, "the names given stand in place of those of line " + file.roles.replaced);
+    if (!file.roles.spelled.empty()) add(file, "as the cells say: " + name_list(file.roles.spelled));
+    if (!file.roles.may_be_grouped.empty())
+      add(file, "left out, numbers only if their thousands are grouped (CsvOptions::thousands = " +
+                    std::string(file.dialect.decimal_mark == '.' ? "comma" : "point") +
+                    "): " + name_list(file.roles.may_be_grouped));
     if (!file.roles.made_up.empty()) add(file, "columns named here: " + name_list(file.roles.made_up));
     if (file.left_out_lines > 0)
       add(file, std::to_string(file.left_out_lines) + (file.left_out_lines == 1 ? " line" : " lines") +
@@ -301,8 +307,14 @@ inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) con
     if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
     if (!file.roles.contradicted.empty()) add(file, "as CsvOptions::units says: " + name_list(file.roles.contradicted));
     if (!file.roles.nearly.empty()) add(file, "taken as inputs: " + name_list(file.roles.nearly));
-    if (!file.roles.ignored.empty() && !options.inputs)
-      add(file, "left out, no numbers: " + name_list(file.roles.ignored));
+    std::vector<std::string> words = file.roles.ignored;
+    words.erase(std::remove_if(words.begin(), words.end(),
+                               [&](const std::string& name) {
+                                 const auto& grouped = file.roles.may_be_grouped;
+                                 return std::find(grouped.begin(), grouped.end(), name) != grouped.end();
+                               }),
+                words.end());
+    if (!words.empty() && !options.inputs) add(file, "left out, no numbers: " + name_list(words));
     if (file.missing == 0 || options.missing == MissingValues::keep) continue;
     const std::string cells = std::to_string(file.missing) + (file.missing == 1 ? " missing value" : " missing values");
     add(file, options.missing == MissingValues::drop

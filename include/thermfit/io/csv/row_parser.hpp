@@ -178,7 +178,7 @@ class RowParser {
             store(slot, value);
             break;
           }
-          problems_.add(bad_cell(here(field.column), name_of(f), field.text, dialect_));
+          problems_.add(bad_cell(here(field.column), name_of(f), field.text, dialect_, layout_.spellings[f]));
           good = false;
       }
     }
@@ -220,7 +220,11 @@ class RowParser {
       value = *number;
       return true;
     }
-    if (!is_missing(text) && !is_marked(text)) return false;
+    if (!is_missing(text) && !is_marked(text)) {
+      const auto number = parse_spelled(text, dialect_.decimal_mark, dialect_.thousands, layout_.spellings[field]);
+      if (number) value = *number;
+      if (number || !trim_hidden(text).empty()) return number.has_value();
+    }
     value = missing_value;
     cells_.missing.push_back({field, column});
     return true;

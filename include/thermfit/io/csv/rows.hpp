@@ -66,7 +66,7 @@ class CsvRowReader {
     file_.roles = layout_.roles;
     may_decrease_ = options_.newest_first && evidence.lines.size() >= header.content_lines + 3;  // two may be a mistake
     parser_.start(evidence, header);
-    if (before > 0) file_.dialect.header_line = header.line;
+    if (before > 0 && header.line > 0) file_.dialect.header_line = header.line;
     std::string_view line;
     for (std::size_t taken = 0; taken < before + header.content_lines && lines_.next(line);)
       taken += detail::is_content(line);
@@ -149,8 +149,8 @@ class CsvRowReader {
                                " is empty, a comment, or not among the first lines"},
                               {"the number of the line that holds the names, from 1"});
       lines.erase(lines.begin(), names);
-    } else if (options_.columns.empty()) {
-      const std::size_t before = detail::lines_before_names(evidence, options_.separator);
+    } else {
+      const std::size_t before = detail::lines_before_names(evidence, options_.separator, options_.columns.size());
       lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(before));
     }
     return all - lines.size();

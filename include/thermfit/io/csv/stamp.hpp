@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "thermfit/io/csv/date_time.hpp"
 #include "thermfit/io/csv/field.hpp"
+#include "thermfit/io/units.hpp"
 
 namespace thermfit {
 
@@ -148,6 +150,13 @@ inline bool take_time(std::string_view& text, Stamp& stamp) {
 /// or an elapsed time, or both, and nothing behind. Nothing for any other text.
 inline std::optional<Stamp> parse_stamp(std::string_view text) {
   Stamp stamp;
+  char plain[64];
+  if (text.size() <= sizeof plain && text.find_first_of("\xC2\xE2\xE3") != std::string_view::npos) {
+    std::size_t size = 0;  // some programs put a hidden blank before PM
+    for (std::size_t blank; !text.empty(); text.remove_prefix(std::max<std::size_t>(1, blank)))
+      plain[size++] = (blank = blank_in_front(text)) > 0 ? ' ' : text.front();
+    text = trim({plain, size});
+  }
   if (take_date(text, stamp)) {
     if (text.empty()) return stamp;
     if (!take(text, 'T')) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "thermfit/io/csv/field.hpp"
+#include "thermfit/io/csv/spelled.hpp"
 #include "thermfit/io/units.hpp"
 
 namespace thermfit {
@@ -27,17 +28,6 @@ struct CsvColumn {
 
 namespace detail {
 
-/// Without blanks around it, hidden ones too.
-inline std::string_view trim_title(std::string_view text) {
-  while (const std::size_t blank = blank_in_front(text)) text.remove_prefix(blank);
-  for (bool again = true; again;) {
-    again = false;
-    for (std::size_t size = std::min<std::size_t>(3, text.size()); size > 0 && !again; --size)
-      if (blank_in_front(text.substr(text.size() - size)) == size) text.remove_suffix(size), again = true;
-  }
-  return text;
-}
-
 /// Whether a word is a unit of temperature or length and nothing else: not C, F, m or in, which names end in too.
 inline bool is_sure_unit(std::string_view word) {
   const auto unit = unit_named(word);
@@ -50,7 +40,7 @@ inline bool is_sure_unit(std::string_view word) {
 /// makes of `Z (mm)`. Nothing when there is no unit, as in `T_in`, `feed mm/min`.
 inline std::optional<std::pair<std::string_view, std::string_view>> split_unit_in_words(std::string_view title) {
   const auto parts = [&](std::size_t end, std::size_t begin) {
-    return std::pair(trim_title(title.substr(0, end)), trim_title(title.substr(begin)));
+    return std::pair(trim_hidden(title.substr(0, end)), trim_hidden(title.substr(begin)));
   };
   if (const std::size_t slash = title.rfind('/'); slash != std::string_view::npos && slash > 0) {
     const auto [name, unit] = parts(slash, slash + 1);
@@ -81,17 +71,17 @@ inline std::optional<std::pair<std::string_view, std::string_view>> split_unit_i
 /// `T1 [degC]` is column T1 in degC. Square brackets always hold a unit; round ones only one that is known.
 inline CsvColumn column_of(const CsvField& field) {
   CsvColumn column;
-  column.title = std::string(trim_title(field.name()));
+  column.title = std::string(trim_hidden(field.name()));
   column.name = column.title;
   column.position = field.column;
   const std::string_view title = column.title;
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
     const std::size_t begin = title.rfind(open);
     if (begin == std::string_view::npos || begin == 0 || title.back() != close) continue;
-    const std::string_view unit = trim_title(title.substr(begin + 1, title.size() - begin - 2));
+    const std::string_view unit = trim_hidden(title.substr(begin + 1, title.size() - begin - 2));
     if (open == '(' && !find_unit(unit)) continue;
     column.unit = unit;
-    column.name = trim_title(title.substr(0, begin));
+    column.name = trim_hidden(title.substr(0, begin));
     return column;
   }
   if (const auto parts = split_unit_in_words(title)) {
