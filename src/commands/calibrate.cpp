@@ -12,6 +12,8 @@
 #include "thermfit/diagnosis/search/screen.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
 #include "thermfit/diagnosis/sides/compare_machine.hpp"
+#include "thermfit/diagnosis/sides/free_datum.hpp"
+#include "thermfit/diagnosis/sides/unlike_sides.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/json/machine.hpp"
 
@@ -79,20 +81,20 @@ Exit run(const Arguments& arguments, Console& console) {
     network.uncertainty.sensor_response = 0;
   else
     network = with_placements(std::move(network));
-  const WithoutBadCells clean =
-      without_bad_cells(read_campaign(arguments, console, files), DataProblem::Side::measured);
-  const MachineRecord seen = observations_of(network, clean.campaign);
+  WithoutBadCells clean =
+      without_bad_cells(read_measured(arguments, console, files, network), DataProblem::Side::measured);
+  MachineRecord seen = observations_of(network, clean.campaign);
   if (!fixed) network.uncertainty.start_share = start_share_sd(network, seen);
   for (const DataProblem& one : clean.left_out) console.note(place_of(one) + ": " + what_of(one));
-  bool unlike = false;
-  for (const DataProblem& one : compare_machine(network, clean.campaign, effects)) {
-    unlike = unlike || one.certain;
-    console.note(place_of(one) + ": " + what_of(one) + "; " + remedy_of(one));
-  }
-  if (unlike) {
+  const std::vector<DataProblem> problems = compare_machine(network, clean.campaign, effects);
+  for (const DataProblem& one : problems)
+    console.note(place_of(one) + ": " + what_of(one) + "; " + remedy_of(one, SimulatorKind::network));
+  if (sides_unlike(problems)) {
     console.note("not calibrated: the machine and the batches are not written down alike");
     return Exit::negative;
   }
+  free_datums(network, clean.campaign, problems);
+  seen = observations_of(network, clean.campaign);
   CalibrationOptions how;
   how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));
   how.seed = static_cast<std::uint64_t>(arguments.integer("--seed", 0, 1L << 53).value_or(1));
@@ -105,7 +107,7 @@ Exit run(const Arguments& arguments, Console& console) {
   if (output && verdict.spoilt() && !arguments.has("--keep-failed"))
     console.note(*output + ": not written: the calibrated machine is not to be believed");
   else if (output)
-    save_machine(calibration.fit.network(), *output);
+    save_machine(with_own_datums(calibration.fit.network()), *output);
   if (arguments.has("--json"))
     console.print(calibration_json(calibration, seen, verdict));
   else

@@ -21,7 +21,7 @@ const char* const details =
 With a machine file, the simulator is the lumped network that it describes: every effect of the catalogue is added at every place and refitted together with the calibration. --write saves the machine with the effect added; `thermfit simulate` then runs it.
 With --sim, the simulator is anybody's: only its output is read, one file a batch with the same names as the measured ones. Effects then act through the traces they leave in the outputs.
 
-First the two sides are compared: a column in another unit, with the other sign, exchanged or copied, and a clock that is off are data problems; where one is certain, it is told and no effect is looked for. Single cells that are no readings are left out and told.
+First the two sides are compared: a column in another unit, with the other sign, exchanged or copied, and a clock that is off are data problems; where one is certain, it is told with what to write, and no effect is looked for. A probe that counts from another zero in some batches is told and its zero left free. Options of the batches hold for the simulator's output too, unless its own (--sim-…) are given. Single cells that are no readings are left out and told.
 The report gives one sentence first, then what was ruled out and why, what could not be told apart, the next experiment, data problems, and tables.
 Verdicts: none (no gap), miscalibration (the simulator's own parameters close it), effect, ambiguous (several remain), unknown (real, but nothing in the catalogue closes it).
 Exit codes: 0 none, miscalibration or effect; 1 ambiguous, unknown, or sides that are not written down alike; 2 could not be done.)";
@@ -38,7 +38,8 @@ std::vector<Option> options() {
       {"--threads", "N", "threads to use (default: all cores)", 0, false},
       {"--json", "", "machine-readable result, thermfit-diagnosis/1", 0, false},
       {"--output", "FILE", "write the result there instead of to stdout", 'o', false}};
-  for (Option& option : campaign_options()) all.push_back(std::move(option));
+  for (auto* more : {campaign_options, simulated_options})
+    for (Option& option : more()) all.push_back(std::move(option));
   return all;
 }
 
@@ -74,7 +75,7 @@ Diagnosis diagnose_by_outputs(const Arguments& arguments, const Console& console
   options.threads = thread_count(arguments);
   options.progress = [&console](const std::string& what) { console.progress(what); };
   const Campaign real = read_campaign(arguments, console, arguments.positionals());
-  const Campaign sim = read_campaign(arguments, console, arguments.values("--sim"));
+  const Campaign sim = read_simulated(arguments, console, arguments.values("--sim"));
   return diagnose_outputs(real, sim, standard_effects(), options);
 }
 
@@ -95,7 +96,7 @@ Diagnosis diagnose_machine(const Arguments& arguments, const Console& console) {
   options.search.progress = [&console](const std::string& step, double share) {
     console.progress(step + " … " + fixed_text(100 * share, 0) + " %");
   };
-  const Campaign real = read_campaign(arguments, console, {words.begin() + 1, words.end()});
+  const Campaign real = read_measured(arguments, console, {words.begin() + 1, words.end()}, machine);
   require_time(real);
   Diagnosis found = diagnose(machine, real, library, options);
   if (found.machine.empty()) found.machine = words[0];
@@ -114,6 +115,9 @@ Exit run_diagnose(const Arguments& arguments, Console& console) {
   for (const char* option : {"--ambient", "--reference"})
     if (!paired && arguments.has(option))
       throw UsageError(std::string(option) + " goes with --sim; a machine file tells it itself");
+  for (const Option& option : simulated_options())
+    if (!paired && arguments.has(option.name))
+      throw UsageError(option.name + " goes with --sim; `channels` of a machine file tell how its batches are written");
   const Diagnosis diagnosis = paired ? diagnose_by_outputs(arguments, console) : diagnose_machine(arguments, console);
   console.progress({});
   if (arguments.has("--json"))

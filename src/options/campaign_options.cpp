@@ -106,18 +106,24 @@ char thousands(const Arguments& arguments) {
   return word == "comma" ? ',' : word == "point" ? '.' : word == "space" ? ' ' : word == "apostrophe" ? '\'' : '\0';
 }
 
+/// The name under which `option` is given for a side: of the simulator's output its own, where there is one.
+std::string of_side(const Arguments& arguments, const std::string& option, CampaignSide side) {
+  const std::string own = "--sim-" + option.substr(2);
+  return side == CampaignSide::simulated && arguments.has(own) ? own : option;
+}
+
 /// `Z=mm`: the last equals sign divides, so that a name may have one.
-std::vector<CsvUnit> units(const Arguments& arguments) {
+std::vector<CsvUnit> units(const Arguments& arguments, const std::string& option) {
   std::vector<CsvUnit> all;
-  for (const std::string& entry : arguments.list("--units")) {
+  for (const std::string& entry : arguments.list(option)) {
     const std::size_t equals = entry.rfind('=');
     if (equals == std::string::npos || equals == 0)
-      throw UsageError("--units has '" + entry + "'; allowed: NAME=UNIT, as in Z=mm or 'T*=degF'");
+      throw UsageError(option + " has '" + entry + "'; allowed: NAME=UNIT, as in Z=mm or 'T*=degF'");
     all.push_back({entry.substr(0, equals), entry.substr(equals + 1)});
     if (!find_unit(all.back().unit))
-      throw UsageError("--units has '" + entry + "'; allowed units: " + std::string(unit_names(Quantity::temperature)) +
-                       "; " + std::string(unit_names(Quantity::length)) + "; " +
-                       std::string(unit_names(Quantity::time)));
+      throw UsageError(option + " has '" + entry +
+                       "'; allowed units: " + std::string(unit_names(Quantity::temperature)) + "; " +
+                       std::string(unit_names(Quantity::length)) + "; " + std::string(unit_names(Quantity::time)));
   }
   return all;
 }
@@ -167,6 +173,20 @@ std::vector<Option> campaign_options() {
   };
 }
 
+std::vector<Option> simulated_options() {
+  return {
+      {"--sim-temperatures", "NAMES", "of the simulator's output (this and the next ones: default: as measured)", 0,
+       true},
+      {"--sim-errors", "NAMES", "thermal errors in the simulator's output", 0, true},
+      {"--sim-inputs", "NAMES", "known inputs in the simulator's output", 0, true},
+      {"--sim-time-column", "NAME", "its clock, or 'none'", 0, false},
+      {"--sim-time-unit", "UNIT", "unit of its clock, where it names none", 0, false},
+      {"--sim-time-format", "FORMAT", "of its clock, as of --time-format", 0, false},
+      {"--sim-units", "NAME=UNIT,…", "units of its columns; without it those of --units, if there are any", 0, true},
+      {"--sim-time-shift", "S", "seconds to add to its clock (default: 0)", 0, false},
+  };
+}
+
 Option absolute_option() {
   return {"--absolute", "", "use temperatures in degC (default: their rise since the first row of the batch)", 0,
           false};
@@ -176,7 +196,8 @@ TemperatureReference temperature_reference(const Arguments& arguments) {
   return arguments.has("--absolute") ? TemperatureReference::absolute : TemperatureReference::rise;
 }
 
-CsvOptions csv_options(const Arguments& arguments) {
+CsvOptions csv_options(const Arguments& arguments, CampaignSide side) {
+  const auto named = [&](const char* option) { return of_side(arguments, option, side); };
   CsvOptions options;
   options.separator = separator(arguments);
   options.decimal_mark = decimal_mark(arguments);
@@ -185,24 +206,25 @@ CsvOptions csv_options(const Arguments& arguments) {
   options.columns = arguments.list("--columns");
   options.missing_marks = arguments.list("--missing-marks");
   options.header_line = static_cast<std::size_t>(arguments.integer("--header-line", 1, 100000).value_or(0));
-  options.time_column = arguments.value_or("--time-column", "");
-  options.time_unit = arguments.value_or("--time-unit", "");
+  options.time_column = arguments.value_or(named("--time-column"), "");
+  options.time_unit = arguments.value_or(named("--time-unit"), "");
   const auto unit = find_unit(options.time_unit);
   if (!options.time_unit.empty() && (!unit || unit->quantity != Quantity::time))
-    throw UsageError("--time-unit is '" + options.time_unit + "'; allowed: " + std::string(unit_names(Quantity::time)));
-  const std::string format =
-      arguments.choice("--time-format", {"auto", "day-first", "month-first", "unix-s", "unix-ms", "days"}, "auto");
+    throw UsageError(named("--time-unit") + " is '" + options.time_unit +
+                     "'; allowed: " + std::string(unit_names(Quantity::time)));
+  const std::string format = arguments.choice(
+      named("--time-format"), {"auto", "day-first", "month-first", "unix-s", "unix-ms", "days"}, "auto");
   options.time_format = format == "day-first"     ? TimeFormat::day_first
                         : format == "month-first" ? TimeFormat::month_first
                         : format == "unix-s"      ? TimeFormat::unix_s
                         : format == "unix-ms"     ? TimeFormat::unix_ms
                         : format == "days"        ? TimeFormat::serial_days
                                                   : TimeFormat::from_file;
-  options.temperatures = arguments.list("--temperatures");
-  options.errors = arguments.list("--errors");
-  options.units = units(arguments);
-  if (arguments.has("--inputs")) {
-    options.inputs = arguments.list("--inputs");
+  options.temperatures = arguments.list(named("--temperatures"));
+  options.errors = arguments.list(named("--errors"));
+  options.units = units(arguments, named("--units"));
+  if (arguments.has(named("--inputs"))) {
+    options.inputs = arguments.list(named("--inputs"));
     if (*options.inputs == std::vector<std::string>{"none"}) options.inputs->clear();
   }
   options.batch_column = arguments.value_or("--batch-column", "");
@@ -269,6 +291,54 @@ CsvReading read_files(const CsvOptions& options, const Console& console, const s
   CsvReading reading = thermfit::read_campaign(files, options);
   for (const std::string& note : reading.notes(options)) console.note(note);
   return reading;
+}
+
+namespace {
+
+/// An error about the simulator's output, in the words of its own options.
+Error of_simulated(const Error& error) {
+  const auto own = [](std::string text) {
+    for (const char* name : {"temperatures", "errors", "inputs", "time_column", "time_unit", "time_format", "units"}) {
+      const std::string field = std::string("CsvOptions::") + name, value = " = ";
+      std::string flag = std::string("--sim-") + name;
+      std::replace(flag.begin(), flag.end(), '_', '-');
+      for (std::size_t at; (at = text.find(field)) != std::string::npos;) {
+        text.replace(at, field.size(), flag);
+        if (text.compare(at + flag.size(), value.size(), value) == 0) text.replace(at + flag.size(), value.size(), " ");
+      }
+    }
+    return text;
+  };
+  return Error(own(error.place()), own(error.found()), own(error.allowed()), own(error.remedy()));
+}
+
+}  // namespace
+
+Campaign read_simulated(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths) {
+  try {
+    Campaign campaign = read_files(csv_options(arguments, CampaignSide::simulated), console, paths).batches;
+    const double shift_s = arguments.number("--sim-time-shift", -1e12, 1e12).value_or(0);
+    for (Batch& batch : campaign)
+      if (batch.has_time()) batch.time_s.array() += shift_s;
+    note_copies(campaign, console);
+    return campaign;
+  } catch (const Error& error) {
+    throw of_simulated(error);
+  }
+}
+
+Campaign read_measured(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths,
+                       const ThermalNetwork& machine) {
+  CsvOptions options = csv_options(arguments);
+  for (const ThermalNetwork::Channel& channel : machine.channels) {
+    const bool error = std::any_of(machine.displacements.begin(), machine.displacements.end(),
+                                   [&](const auto& output) { return output.output == channel.column; });
+    const std::string unit = channel.unit.empty() ? (error ? "um" : "degC") : channel.unit;
+    options.units.push_back({channel.column, (channel.correction ? "-" : "") + unit, true});
+  }
+  Campaign campaign = read_files(options, console, paths).batches;
+  note_copies(campaign, console);
+  return campaign;
 }
 
 Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths,

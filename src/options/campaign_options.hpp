@@ -9,6 +9,7 @@
 #include "cli/console.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
 #include "thermfit/io/csv/reader.hpp"
+#include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit::cli {
 
@@ -19,8 +20,17 @@ std::vector<Option> campaign_options();
 Option absolute_option();
 TemperatureReference temperature_reference(const Arguments& arguments);
 
+/// Roles, clock and units of the simulator's output, for commands that read one.
+std::vector<Option> simulated_options();
+
+/// Whose files are read.
+enum class CampaignSide {
+  measured,  ///< the batches
+  simulated  ///< the simulator's output: simulated_options() come before those of the batches
+};
+
 /// What the options say about CSV files. Throws UsageError on a value that is not allowed.
-CsvOptions csv_options(const Arguments& arguments);
+CsvOptions csv_options(const Arguments& arguments, CampaignSide side = CampaignSide::measured);
 
 /// Files, folders (their *.csv and *.csv.gz), quoted globs and `-` as a list of files; folders and globs in order of
 /// name, digits compared as numbers. Throws Error when one of them is not there or holds nothing.
@@ -31,6 +41,11 @@ CsvReading read_files(const CsvOptions& options, const Console& console, const s
 /// For who needs no inputs, their cells may be empty.
 Campaign read_campaign(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths,
                        bool needs_inputs = true);
+/// The output of a simulator.
+Campaign read_simulated(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths);
+/// Batches of a machine, whose file says how they are written where they and the options do not.
+Campaign read_measured(const Arguments& arguments, const Console& console, const std::vector<std::string>& paths,
+                       const ThermalNetwork& machine);
 
 /// Whether a plain file begins as a JSON document does.
 bool begins_as_json(const std::string& path);

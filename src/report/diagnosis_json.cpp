@@ -158,9 +158,11 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
   document["where"] = where_json(diagnosis.where);
   document["remaining"] = remaining_json(diagnosis.remaining, diagnosis.gap.unit);
   document["next_experiment"] = next_experiment_json(diagnosis.next_experiment);
-  document["ruled_out"] = array_of(diagnosis.ruled_out, [](const RuledOut& one) {
-    return OrderedJson{{"effect", one.effect}, {"location", one.location}, {"reason", reason_of(one)}};
-  });
+  document["ruled_out"] = OrderedJson::array();
+  for (const RuledOut& one : diagnosis.ruled_out)
+    if (one.by != RuledOutBy::remains)
+      document["ruled_out"].push_back(
+          {{"effect", one.effect}, {"location", one.location}, {"reason", reason_of(one, diagnosis.gap.held_out)}});
   const Support& support = diagnosis.support;
   document["grounds"] = {{"candidates", support.candidates},
                          {"nearest", array_of(support.nearest, named_json<Rival>)},
@@ -172,10 +174,10 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
                        {"from", figure(one.from)},           {"to", figure(one.to)},
                        {"prior_sds", figure(one.prior_sds)}, {"pinned", one.pinned}};
   });
-  document["data_problems"] = array_of(diagnosis.data_problems, [](const DataProblem& one) {
+  document["data_problems"] = array_of(diagnosis.data_problems, [&](const DataProblem& one) {
     OrderedJson problem{{"place", place_of(one)}, {"what", what_of(one)}};
     if (one.kind >= DataProblem::Kind::unit) problem["certain"] = one.certain;
-    if (const std::string remedy = remedy_of(one); !remedy.empty()) problem["remedy"] = remedy;
+    if (const std::string remedy = remedy_of(one, diagnosis.simulator); !remedy.empty()) problem["remedy"] = remedy;
     return problem;
   });
   document["weaker_claims"] = array_of(diagnosis.weaker_claims, claim_of);

@@ -98,15 +98,18 @@ std::string unlike_sentence(const Diagnosis& diagnosis) {
   std::string text = "The two sides are not written down alike, so that no effect is looked for: ";
   std::vector<std::string> what, remedies;
   for (const DataProblem& one : diagnosis.data_problems) {
-    if (!one.certain) continue;
+    if (!one.certain || one.kind == DataProblem::Kind::datum) continue;
     what.push_back(what_of(one));
-    const std::string remedy = remedy_of(one);
+    const std::string remedy = remedy_of(one, diagnosis.simulator);
     if (std::find(remedies.begin(), remedies.end(), remedy) == remedies.end()) remedies.push_back(remedy);
   }
   text += joined(what, "; ");
   if (text.back() != '?') text += ".";
   for (std::string& remedy : remedies) {
-    remedy[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
+    if (remedy[0] == '-')
+      remedy = "Say " + remedy;
+    else
+      remedy[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
     text += " " + remedy + ".";
   }
   return text;
@@ -163,10 +166,24 @@ class Sections {
 
 std::vector<std::string> ruled_out(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
+  std::size_t more = 0;
+  for (const RuledOut& one : diagnosis.ruled_out) {
+    if (one.by == RuledOutBy::remains) continue;
+    if (lines.size() < 8)
+      lines.push_back(title_of(one.effect, one.location, "") + ": " + reason_of(one, diagnosis.gap.held_out));
+    else
+      ++more;
+  }
+  if (more > 0) lines.push_back(std::to_string(more) + " more: --json lists them");
+  return lines;
+}
+
+/// What closes most of the gap without a name is not ruled out.
+std::vector<std::string> nearest_accounts(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
   for (const RuledOut& one : diagnosis.ruled_out)
-    if (lines.size() < 8) lines.push_back(title_of(one.effect, one.location, "") + ": " + reason_of(one));
-  if (diagnosis.ruled_out.size() > lines.size())
-    lines.push_back(std::to_string(diagnosis.ruled_out.size() - lines.size()) + " more: --json lists them");
+    if (one.by == RuledOutBy::remains)
+      lines.push_back(title_of(one.effect, one.location, "") + ": " + reason_of(one, diagnosis.gap.held_out));
   return lines;
 }
 
@@ -202,7 +219,7 @@ std::vector<std::string> next_experiment(const NextExperiment& next) {
 std::vector<std::string> data_problems(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
   for (const DataProblem& one : diagnosis.data_problems) {
-    const std::string remedy = remedy_of(one);
+    const std::string remedy = remedy_of(one, diagnosis.simulator);
     lines.push_back(place_of(one) + ": " + what_of(one) +
                     (remedy.empty() ? "" : (what_of(one).back() == '?' ? " " : "; ") + remedy));
   }
@@ -312,6 +329,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     return text + sections.text + (diagnosis.gap.per_sensor.empty() ? "" : '\n' + gap_table(diagnosis));
   }
   text += remaining_text(diagnosis);
+  sections.add("Nearest, but not enough for a name", nearest_accounts(diagnosis));
   sections.add("Ruled out", ruled_out(diagnosis));
   sections.add("Not told apart by these data", not_told_apart(diagnosis));
   sections.add("Next experiment", next_experiment(diagnosis.next_experiment));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thermfit/diagnosis/sides/reading.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -61,25 +62,27 @@ std::string menu_settings(const PlannedBlock& block) {
   return {};
 }
 
+/// " of pump", or nothing where the input is left open.
+std::string of_subject(const PlannedBlock& block) { return block.subject.empty() ? "" : " of " + block.subject; }
+
 /// Settings of a schedule that shows an effect by itself, locates a gap or pins a parameter.
 std::string general_settings(const PlannedBlock& block) {
   const bool locates = block.purpose == SchedulePurpose::locates;
   switch (block.kind) {
     case ScheduleKind::speed_stair:
-      return "each speed held until the machine settles";
+      return "each level" + of_subject(block) + " held until the machine settles";
     case ScheduleKind::single_high_speed:
-      return "full speed from cold";
+      return "the highest level" + of_subject(block) + " from cold";
     case ScheduleKind::cool_down:
-      return block.purpose == SchedulePurpose::pins
-                 ? "full speed, then off for twice as long: capacities and conductances separate"
-                 : "full speed, then off for twice as long";
+      return "the highest level" + of_subject(block) + ", then off for twice as long" +
+             (block.purpose == SchedulePurpose::pins ? ": capacities and conductances separate" : "");
     case ScheduleKind::toggle:
       return locates ? "hold everything else, step only " + block.subject + " on and off, twice, long enough to settle"
                      : "only " + block.subject + " on and off, twice, everything else held";
     case ScheduleKind::only:
       return "only " + block.subject + ", everything else off, then a pause";
     case ScheduleKind::idle_day:
-      return locates ? "everything off, room logged: what remains then is not driven by the spindle"
+      return locates ? "everything off, room logged: what remains then is driven by no input"
                      : "everything off, room logged";
     case ScheduleKind::repeat:
       return "the first batch again, after a night at rest";
@@ -101,12 +104,13 @@ std::string output_name(const Gap& gap) { return gap.output.empty() ? "temperatu
 
 std::string name_of(const Rival& rival) { return rival.effect + " at " + rival.location; }
 
-std::string reason_of(const RuledOut& one) {
+std::string reason_of(const RuledOut& one, bool held_out) {
+  const std::string where = held_out ? " on batches not used for fitting" : "";
   switch (one.by) {
     case RuledOutBy::no_shrink:
-      return "does not shrink the gap on held-out batches";
+      return "does not shrink the gap" + where;
     case RuledOutBy::share:
-      return "closes " + whole_percent(one.value) + " of the gap on held-out batches" +
+      return "closes " + whole_percent(one.value) + " of the gap" + where +
              (std::isfinite(one.best) ? ", the best " + whole_percent(one.best) : "");
     case RuledOutBy::calibration:
       return "no better than calibration (" + fixed_text(std::max(0., one.value), 0) + " nats)";
@@ -121,7 +125,12 @@ std::string reason_of(const RuledOut& one) {
     case RuledOutBy::same_sign:
       return "both ends respond with the same sign";
     case RuledOutBy::remains:
-      return "comes nearest, but leaves too much on batches left out";
+      if (std::isfinite(one.best))
+        return "closes " + whole_percent(one.value) + " of the gap" + where +
+               ", no less than what is named, with less evidence";
+      return (one.value > 0 ? "closes " + whole_percent(one.value) + " of the gap" + where + ", but "
+                            : "comes nearest" + where + ", but ") +
+             "leaves too much";
   }
   return {};
 }
@@ -142,9 +151,9 @@ std::string looks_of(const Remaining& remaining, const std::string& unit) {
 std::string schedule_of(const PlannedBlock& block) {
   switch (block.kind) {
     case ScheduleKind::speed_stair:
-      return "speed stair";
+      return block.subject.empty() ? "stair" : block.subject + " stair";
     case ScheduleKind::single_high_speed:
-      return "single high speed";
+      return block.subject.empty() ? "highest level" : block.subject + " at its highest";
     case ScheduleKind::cool_down:
       return "cool-down";
     case ScheduleKind::toggle:
@@ -239,10 +248,10 @@ std::string difference_of(const DataProblem& problem) {
     case Kind::copied:
       return side_of(problem) + problem.names[1] + " holds " + problem.names[0] + " once more, to the last digit";
     case Kind::clock_unit:
-      return (problem.side == DataProblem::Side::simulated ? "the times of the simulator's output are "
-              : problem.side == DataProblem::Side::measured
-                  ? "the times of the batches are "
-                  : "the times of the simulator's output, against those of the batches, are ") +
+      return (problem.side == DataProblem::Side::simulated  ? "the times of the simulator's output are "
+              : problem.side == DataProblem::Side::measured ? "the times of the batches are "
+                                                            : "the times of one side are wrong: those of the "
+                                                              "simulator's output are, beside those of the batches, ") +
              times_text(problem.figure > 1 ? problem.figure : 1 / problem.figure) +
              (problem.figure > 1 ? " times too long: " : " times too short: ") + mistaken_clock(problem.figure) + "?";
     case Kind::clock_offset:
@@ -278,8 +287,9 @@ std::string place_of(const DataProblem& problem) {
     case Kind::copied:
     case Kind::clock_unit:
     case Kind::clock_offset:
-    case Kind::datum:
       return problem.certain ? "certain" : "suspected";
+    case Kind::datum:
+      return "datum";
   }
   return {};
 }
@@ -302,32 +312,125 @@ std::string what_of(const DataProblem& problem) {
     case Kind::left_out:
       return (problem.note.find_first_of("-,") == std::string::npos ? "row " : "rows ") + problem.note + ": " +
              problem.rule + ", no reading; left out (read off between its neighbours)";
+    case Kind::datum:
+      return side_of(problem) + joined(problem.names) + " counts from another zero in " + problem.note + "; left free";
     default:
       return difference_of(problem) + where_in(problem);
   }
 }
 
-std::string remedy_of(const DataProblem& problem) {
+namespace {
+
+/// "'T1=K,T2=K'", as --units takes it.
+std::string units_for(const DataProblem& problem, const std::string& unit) {
+  std::string text;
+  for (const std::string& name : problem.names) text += (text.empty() ? "'" : ",") + name + "=" + unit;
+  return text + "'";
+}
+
+/// "--units WRONG", where the simulator's output is not written like that; of its own options where it is that side.
+std::string on_side(const DataProblem& problem, SimulatorKind simulator, const std::string& option,
+                    const std::string& wrong, const std::string& right) {
+  if (problem.side == DataProblem::Side::simulated) return "--sim-" + option + " " + wrong;
+  return "--" + option + " " + wrong +
+         (simulator == SimulatorKind::outputs ? " --sim-" + option + " " + right : std::string());
+}
+
+/// In what unit columns are that seem to be in `unit`, as find_unit() knows it.
+std::string own_unit(const DataProblem& problem) {
+  const bool length = std::any_of(length_units.begin(), length_units.end(),
+                                  [&](const LengthUnit& one) { return problem.unit == one.name; });
+  return length ? "um" : "degC";
+}
+
+/// A header line or a machine file instead of an option.
+std::string or_in_file(const DataProblem& problem, SimulatorKind simulator, const std::string& unit) {
+  std::string text = ", or name it in the header: " + problem.names[0] + " [" + unit + "]";
+  if (simulator == SimulatorKind::network)
+    text += ", or in the machine file: \"channels\": {\"" + problem.names[0] + "\": {\"unit\": \"" + unit + "\"}}";
+  return text;
+}
+
+std::string unit_remedy(const DataProblem& problem, SimulatorKind simulator) {
+  const std::string of = problem.batches.empty() ? "" : " of " + joined(problem.batches);
+  if (!of.empty()) return "name the unit in the header" + of + ": " + problem.names[0] + " [" + problem.unit + "]";
+  if (problem.side == DataProblem::Side::simulated && simulator == SimulatorKind::network) {
+    if (own_unit(problem) == "um" && problem.figure > 0)
+      for (const LengthUnit& one : length_units)
+        if (problem.unit == one.name)
+          return "the machine file's um_per_K of " + problem.names[0] + " are in " + problem.unit +
+                 " per K: multiply them by " + general_text(one.um, 6);
+    return "write the temperatures of the machine file in degC";
+  }
+  return on_side(problem, simulator, "units", units_for(problem, problem.unit), units_for(problem, own_unit(problem))) +
+         or_in_file(problem, simulator, problem.unit);
+}
+
+std::string sign_remedy(const DataProblem& problem, SimulatorKind simulator) {
+  const std::string correction = units_for(problem, "-" + (problem.unit.empty() ? "um" : problem.unit));
+  if (simulator == SimulatorKind::outputs)
+    return "errors are compared with errors: where the measured ones are corrections --units " + correction +
+           " --sim-units " + units_for(problem, "um") + ", where the simulator's are --sim-units " + correction;
+  return "errors are compared with errors: --units " + correction + ", or in the machine file: \"channels\": {\"" +
+         problem.names[0] + "\": {\"sign\": \"correction\"}}";
+}
+
+/// The unit of time that was meant, and the one that was read.
+std::pair<std::string, std::string> clock_units(double factor) {
+  const double size = factor > 1 ? factor : 1 / factor;
+  const std::string small = size > 9000 || std::abs(size - 1000) < 1 ? "ms" : "s";
+  const std::string large = size > 9000 || size < 100 ? "min" : size < 2000 ? "s" : "h";
+  return factor > 1 ? std::make_pair(small, large) : std::make_pair(large, small);
+}
+
+std::string clock_remedy(DataProblem problem, SimulatorKind simulator) {
+  const auto [meant, read] = clock_units(problem.figure);
+  const auto of_title = [](const std::string& unit) { return "'TITLE=" + unit + "'"; };
+  const auto options = [&, meant = meant, read = read](bool titled) {
+    return titled ? on_side(problem, simulator, "units", of_title(meant), of_title(read))
+                  : on_side(problem, simulator, "time-unit", meant, read);
+  };
+  if (problem.side != DataProblem::Side::either)
+    return options(false) + "; where the clock's title names another unit, " + options(true);
+  problem.side = DataProblem::Side::simulated;
+  return "where it is the simulator's clock, " + options(false) + "; else the clock of the batches is in " +
+         clock_units(1 / problem.figure).first + ": --time-unit and --sim-time-unit say so";
+}
+
+}  // namespace
+
+std::string remedy_of(const DataProblem& problem, SimulatorKind simulator) {
   using Kind = DataProblem::Kind;
+  const bool paired = simulator == SimulatorKind::outputs;
   switch (problem.kind) {
     case Kind::unit:
-      if (problem.unit.find(' ') != std::string::npos)
-        return "write them in " +
-               std::string(problem.names.size() > 0 && problem.unit.find("um") != std::string::npos ? "um" : "degC");
-      return "name the unit in the header: " + problem.names[0] + " [" + problem.unit + "]";
-    case Kind::factor:
-      return "write both in um";
+      return unit_remedy(problem, simulator);
+    case Kind::factor: {
+      const std::string um = general_text(1 / problem.figure, 3);
+      return "say how many um one count is, some " + um + " if the simulator is right: --units " +
+             units_for(problem, um + "um") + (paired ? " --sim-units " + units_for(problem, "um") : "");
+    }
     case Kind::sign:
-      return "turn the sign on one side: thermfit compares errors with errors";
-    case Kind::swapped:
-      return "exchange the names in the header" +
-             std::string(problem.side == DataProblem::Side::measured ? "" : " of one side, or the wires");
+      return sign_remedy(problem, simulator);
+    case Kind::swapped: {
+      const std::string names = joined(problem.names, " and ");
+      const std::string header = "exchange the names " + names + " in the header of the batches";
+      return paired ? header + ", or of the simulator's output if it is that side"
+                    : header + ", or their nodes in `sensors` of the machine file";
+    }
     case Kind::copied:
-      return "leave " + problem.names[1] + " out, or read what it should hold";
+      return "leave " + problem.names[1] + " out" +
+             (problem.side == DataProblem::Side::simulated ? " of the simulator's output" : "") +
+             ", or read what it should hold";
     case Kind::clock_unit:
-      return "name the unit of the clock in the header or by --time-unit";
+      return clock_remedy(problem, simulator);
     case Kind::clock_offset:
-      return "let both clocks begin with the same sample";
+      if (paired && problem.batches.empty())
+        return "let both clocks begin with the same sample: --sim-time-shift " + general_text(problem.figure, 12);
+      return "let " + std::string(paired ? "both clocks" : "readings and inputs") + " begin with the same sample";
+    case Kind::datum:
+      if (paired) return "if the probe kept its zero, something else moved it there";
+      return "if the probe kept its zero, write \"datum\": \"absolute\" into `displacement` of the machine file";
     default:
       return {};
   }
@@ -341,7 +444,8 @@ std::string claim_of(const WeakerClaim& claim) {
              "itself, and a wrong effect may look right.";
     case Kind::few_batches:
       return "Only " + std::to_string(claim.batches) +
-             " batches: held-out figures rest on few data and the interval of the shrink is wide.";
+             " batches: figures of batches not used for fitting rest on few data and the interval of the shrink is "
+             "wide.";
     case Kind::constant_input:
       return "Input " + claim.subject + " never changes: effects that it drives cannot be told from calibration.";
     case Kind::lone_input:

@@ -18,7 +18,8 @@ std::string output_name(const Gap& gap);
 /// An effect at its place: "missing-link at head-column".
 std::string name_of(const Rival& rival);
 
-std::string reason_of(const RuledOut& one);
+/// Why it was dropped; `held_out`: judged on batches not used for fitting.
+std::string reason_of(const RuledOut& one, bool held_out);
 /// How the two views of the place differ; empty where they agree.
 std::string difference_of(const Where& where);
 std::string looks_of(const Remaining& remaining, const std::string& unit);
@@ -29,7 +30,7 @@ std::string remark_of(const NextExperiment& next);
 /// Where a data problem lies, what it is, and what to write or do where that is known.
 std::string place_of(const DataProblem& problem);
 std::string what_of(const DataProblem& problem);
-std::string remedy_of(const DataProblem& problem);
+std::string remedy_of(const DataProblem& problem, SimulatorKind simulator);
 std::string claim_of(const WeakerClaim& claim);
 
 }  // namespace thermfit::cli

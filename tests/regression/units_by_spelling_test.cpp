@@ -59,6 +59,24 @@ TEST_CASE("units by option hold for names and globs, and win over the file with 
   CHECK(notes("Time_s,T1,T2 [degC]\n0,20,20\n", options).find("says") == std::string::npos);
 }
 
+TEST_CASE("a minus before a unit of length turns a column of corrections into errors") {
+  CsvOptions options;
+  options.units = {{"Z", "-mm"}};
+  const std::string text = "Time,T1,Z\n0,20,0.001\n1,20,-0.002\n";
+  CHECK(read_text(text, options).batches.front().errors.values == (Matrix(2, 1) << -1, 2).finished());
+  options.units = {{"T1", "-degC"}};
+  CHECK_THROWS_AS(read_text(text, options), Error);
+}
+
+TEST_CASE("what a machine says of units holds where the file says nothing") {
+  CsvOptions options;
+  options.units = {{"Z", "-mm", true}, {"T1", "K", true}, {"T9", "K", true}};
+  const Batch batch = read_text("Time,T1 [degC],Z\n0,20,0.001\n1,20,-0.002\n", options).batches.front();
+  CHECK(batch.temperatures.values(0, 0) == 20);
+  CHECK(batch.errors.values == (Matrix(2, 1) << -1, 2).finished());
+  CHECK(read_text("Time,T1,Z [um]\n0,293.15,1\n1,293.15,2\n", options).batches.front().errors.values(0, 0) == -1);
+}
+
 TEST_CASE("a column that is nearly a temperature or an error is told when it becomes an input") {
   CHECK(notes("time_s,t1,T2,z,T 3,Ambient [degC],rpm\n0,20,20,1,20,20,1000\n") ==
         "taken as inputs: t1 (nearly T1: CsvOptions::temperatures = NAMES), z (nearly Z: CsvOptions::errors = NAMES), "

@@ -14,6 +14,7 @@
 #include "thermfit/diagnosis/planning/next_experiment.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
 #include "thermfit/diagnosis/sides/compare_machine.hpp"
+#include "thermfit/diagnosis/sides/free_datum.hpp"
 #include "thermfit/diagnosis/sides/unlike_sides.hpp"
 #include "thermfit/diagnosis/where/remaining.hpp"
 #include "thermfit/diagnosis/where/transfer.hpp"
@@ -99,6 +100,10 @@ std::vector<RuledOut> ruled_out(const SearchResult& found, const Judgement& judg
     }
     result.push_back(std::move(entry));
   }
+  const auto most = std::max_element(result.begin(), result.end(),
+                                     [](const RuledOut& a, const RuledOut& b) { return a.value < b.value; });
+  if (most != result.end() && most->by == RuledOutBy::share && !(most->value < most->best))
+    most->by = RuledOutBy::remains;  // what closes most is not ruled out
   return result;
 }
 
@@ -195,17 +200,19 @@ inline void require_courses(const Campaign& real) {
 
 }  // namespace detail
 
-/// Diagnoses why `machine` disagrees with the measured batches `recorded`: leaves out cells that are no readings; looks
-/// whether both are written down alike (units, signs, clocks, columns), and says so and nothing else where they are
-/// not; calibrates it, tries every effect of `library` at every place together with the calibration, judges on batches
-/// not used, and says where the gap lies, what remains and what to measure next. The result is complete. Throws Error
-/// on a campaign that cannot drive the machine, an unknown name in `options`, or missing times. Allocates.
+/// Diagnoses why the machine `given` disagrees with the measured batches `recorded`: leaves out cells that are no
+/// readings; looks whether both are written down alike (units, signs, clocks, columns), and says so and nothing else
+/// where they are not; leaves the zero of a probe free that is set anew; calibrates it, tries every effect of `library`
+/// at every place together with the calibration, judges on batches not used, and says where the gap lies, what remains
+/// and what to measure next. The result is complete. Throws Error on a campaign that cannot drive the machine, an
+/// unknown name in `options`, or missing times. Allocates.
 template <typename Scalar = double>
-Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& recorded, const EffectLibrary& library,
+Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const EffectLibrary& library,
                    const DiagnoseOptions& options = {}) {
   detail::require_courses(recorded);
+  ThermalNetwork machine = given;
   WithoutBadCells clean = without_bad_cells(recorded, DataProblem::Side::measured);
-  const Campaign& real = clean.campaign;
+  Campaign& real = clean.campaign;
   std::vector<DataProblem> problems = std::move(clean.left_out);
   const auto note = [&](std::vector<DataProblem> more) {
     for (DataProblem& one : more) problems.push_back(std::move(one));
@@ -224,6 +231,7 @@ Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& recorded, cons
     }
   }
   note(data_problems(machine, real, clean.others));
+  free_datums<Scalar>(machine, real, problems);
   const Setting setting = setting_of(machine, real);
   const SearchResult found =
       search(machine, real, library, detail::wanted_candidates(library, setting, options), options.search);
@@ -246,7 +254,7 @@ Diagnosis diagnose(const ThermalNetwork& machine, const Campaign& recorded, cons
   diagnosis.weaker_claims = detail::claims_of<Scalar>(found, machine, setting);
   diagnosis.judged_by = named_numbers(options.thresholds);
   diagnosis.judged_by.emplace_back("evidence_power", evidence_power);
-  diagnosis.with_effects = found.at(judgement.best).fit.network();
+  diagnosis.with_effects = with_own_datums(found.at(judgement.best).fit.network());
   diagnosis.next_experiment = detail::experiment_after<Scalar>(found, judgement, diagnosis, library);
   return diagnosis;
 }

@@ -81,7 +81,7 @@ enum class RuledOutBy {
   sign,         ///< the thermometers respond with the wrong sign
   elsewhere,    ///< other thermometers than its own respond most
   same_sign,    ///< both ends of a heat exchange respond with the same sign
-  remains       ///< comes nearest, but leaves too much on batches left out
+  remains       ///< not ruled out: closes most, the share `value` (0: not known), but leaves too much for a name
 };
 
 /// An effect that was tried and dropped, at the place where it fitted best.
@@ -147,6 +147,7 @@ struct ConditionShare {
   std::string factor;        ///< an input, the ambient column, "phase" or "batch"
   std::string level;         ///< empty where it is a range
   bool is_range = false;     ///< `range` counts, not `level`
+  bool settable = false;     ///< an input, held at levels, which an experiment can set; no temperature
   Interval range;            ///< of the values of the factor, in its unit
   double share = 0;          ///< of the square of the gap, 0…1; those of one factor add up to 1
   double rms = 0;            ///< of the gap under this condition, in the unit of the output
@@ -263,7 +264,8 @@ struct DataProblem {
     copied,         ///< the second of `names` holds the first once more
     clock_unit,     ///< times are `figure` times too long
     clock_offset,   ///< everything measured comes `figure` seconds later than simulated
-    datum           ///< the probe of `names` counts from another zero in each of `batches`; left free
+    datum           ///< the probe of `names` counts from another zero in each of `batches`, `figure` um at most, each
+                    ///< in the note; left free
   };
   /// The column of which side it is.
   enum class Side {

@@ -18,7 +18,7 @@ class Coolant : public Effect {
  public:
   std::string name() const override { return "coolant"; }
   Stage stage() const override { return Stage::boundary; }
-  std::string meaning() const override { return "a coolant takes heat away"; }
+  std::string meaning() const override { return "a coolant takes heat away while it is on"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& input : setting.on_off_inputs)
@@ -103,7 +103,7 @@ class ForcedConvection : public Effect {
  public:
   std::string name() const override { return "forced-convection"; }
   Stage stage() const override { return Stage::boundary; }
-  std::string meaning() const override { return "cooling grows with speed"; }
+  std::string meaning() const override { return "cooling grows with its driver"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& input : setting.inputs)

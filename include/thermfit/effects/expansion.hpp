@@ -113,7 +113,7 @@ class SpeedShift : public Effect {
  public:
   std::string name() const override { return "speed-shift"; }
   Stage stage() const override { return Stage::expansion; }
-  std::string meaning() const override { return "the spindle moves with speed at once"; }
+  std::string meaning() const override { return "a shift follows its driver at once, without any heat"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
     for (const std::string& place : displacement_places(setting.network))

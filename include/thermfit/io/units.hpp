@@ -134,8 +134,15 @@ inline std::optional<double> unit_factor(std::string_view text) {
 }  // namespace detail
 
 /// The unit that `text` names, in any case and usual spelling (degC, °C, Deg. C), also with a factor before it
-/// (0.1 um, 1.25um, 1/1000 mm, as some controls count); nothing when unknown. Allocates.
+/// (0.1 um, 1.25um, 1/1000 mm, as some controls count), and of a length also with a minus before it (-um: corrections,
+/// where thermfit counts errors); nothing when unknown. Allocates.
 inline std::optional<Unit> find_unit(std::string_view text) {
+  if (detail::starts_with(text, "-") && text.size() > 1 && text[1] != '-') {
+    auto unit = find_unit(text.substr(1));
+    if (!unit || unit->quantity != Quantity::length) return std::nullopt;
+    unit->numerator = -unit->numerator;
+    return unit;
+  }
   if (const auto unit = detail::unit_named(text)) return unit;
   if (text.empty() || text.front() < '0' || text.front() > '9') return std::nullopt;
   for (std::size_t i = 1; i < text.size(); ++i) {

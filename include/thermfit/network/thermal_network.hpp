@@ -41,6 +41,14 @@ struct ThermalNetwork {
     std::string output;                              ///< the batch column it is compared with
     bool zero_at_first_sample = true;                ///< measured from its first sample
     std::vector<std::pair<Index, double>> um_per_K;  ///< node, expansion
+    bool absolute = false;    ///< the probe's zero is part of what is measured, not set anew in each batch
+    bool free_datum = false;  ///< while machine and data are compared: about its mean over the batch, as the data are
+  };
+  /// How batches of this machine write a column, where they do not say it themselves.
+  struct Channel {
+    std::string column;       ///< of a thermometer or a displacement
+    std::string unit;         ///< "mm", "K"; empty: um, degC
+    bool correction = false;  ///< a displacement written as correction: the error with the other sign
   };
   /// A thermometer.
   struct Sensor {
@@ -118,6 +126,7 @@ struct ThermalNetwork {
   std::vector<HeatSource> heat_sources;     ///< what warms it
   std::vector<Displacement> displacements;  ///< what is compared with the thermal errors
   std::vector<Sensor> sensors;              ///< what is compared with the temperatures
+  std::vector<Channel> channels;            ///< columns that are written otherwise than in um and degC
   Initial initial;                          ///< where a batch begins
   Uncertainty uncertainty;                  ///< what is known of its numbers
   std::vector<AddedEffect> effects;         ///< in the order in which they act

@@ -88,6 +88,7 @@ class ThermalSystem {
   /// A ThermalNetwork::Displacement.
   struct Displacement {
     bool zero_at_first_sample = true;                ///< measured from its first sample
+    bool free_datum = false;                         ///< instead: from its mean over the samples
     std::vector<std::pair<Index, double>> um_per_K;  ///< node, expansion
     std::vector<Column> columns;                     ///< of the expansions
     /// What an effect adds at each sample.

@@ -3,18 +3,19 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "support/catch.hpp"
-#include "support/withheld.hpp"
 #include "thermfit/calibration/start_tolerance.hpp"
 #include "thermfit/diagnosis/outputs/output_sides.hpp"
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
 #include "thermfit/diagnosis/sides/compare_clocks.hpp"
 #include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/effects/catalogue.hpp"
+#include "thermfit/io/csv/reader.hpp"
 #include "thermfit/io/json/machine.hpp"
 #include "thermfit/statistics/random.hpp"
 
@@ -23,6 +24,7 @@ using namespace thermfit;
 namespace {
 
 using Kind = DataProblem::Kind;
+namespace fs = std::filesystem;
 
 /// Problems as diagnose() finds them before it explains anything.
 std::vector<DataProblem> by_network(const ThermalNetwork& machine, const Campaign& real, const EffectLibrary& library) {
@@ -49,6 +51,38 @@ std::vector<DataProblem> by_outputs(const Campaign& real, const Campaign& sim) {
   return found;
 }
 
+/// The cases of data/withheld, or those of the folder that THERMFIT_CAMPAIGNS names, as tests/blind generates them.
+std::vector<std::string> folders() {
+  const char* generated = std::getenv("THERMFIT_CAMPAIGNS");
+  std::vector<std::string> result;
+  for (const auto& entry : fs::directory_iterator(generated ? generated : THERMFIT_SOURCE_DIR "/data/withheld"))
+    if (fs::exists(entry.path() / "machine.json")) result.push_back(entry.path().string());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+Campaign batches_in(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return read_campaign(files).batches;
+}
+
+/// What the machine file says for the same batches.
+Campaign simulated(const ThermalNetwork& machine, const Campaign& real, const EffectLibrary& library) {
+  Campaign result = real;
+  for (Batch& batch : result) {
+    const Simulation one = simulate(machine, {excitation_of(machine, batch)}, library)[0];
+    for (std::size_t s = 0; s < machine.sensors.size(); ++s)
+      if (const Index c = batch.temperatures.find(machine.sensors[s].column); c >= 0 && machine.sensors[s].node >= 0)
+        batch.temperatures.values.col(c) = one.channels.col(static_cast<Index>(s));
+    for (std::size_t d = 0; d < machine.displacements.size(); ++d)
+      if (const Index c = batch.errors.find(machine.displacements[d].output); c >= 0)
+        batch.errors.values.col(c) = one.channels.col(static_cast<Index>(machine.sensors.size() + d));
+  }
+  return result;
+}
+
 /// What a fault is, and by what it is recognised.
 struct Plant {
   const char* name;
@@ -62,6 +96,7 @@ std::size_t drawn(std::uint64_t& state, std::size_t below) {
 }
 
 std::vector<std::string> scaled(Campaign& campaign, const std::string& name, double scale, double shift) {
+  if (campaign[0].temperatures.find(name) < 0 && campaign[0].errors.find(name) < 0) return {};
   for (Batch& batch : campaign)
     for (Channels* channels : {&batch.temperatures, &batch.errors})
       if (const Index c = channels->find(name); c >= 0)
@@ -150,6 +185,14 @@ std::vector<Plant> plants() {
          return two;
        },
        Kind::copied},
+      {"another zero in a batch",
+       [](Campaign& c, const Campaign&, std::uint64_t& s) {
+         Batch& batch = c[drawn(s, c.size())];
+         if (batch.errors.find("Z") < 0) return std::vector<std::string>{};
+         batch.errors.values.col(batch.errors.find("Z")).array() += 200 * symmetric_uniform(s) + 250;
+         return std::vector<std::string>{"Z"};
+       },
+       Kind::datum},
       {"two bad cells",
        [thermometer](Campaign& c, const Campaign&, std::uint64_t& s) {
          const std::string name = thermometer(c, s);
@@ -217,7 +260,7 @@ TEST_CASE("what is written down differently on one side is found and named, and 
   };
   std::vector<std::pair<std::string, Count>> table;
   const bool verbose = std::getenv("THERMFIT_VERBOSE") != nullptr;
-  int clean = 0, false_alarms = 0, suspicions = 0;
+  int clean = 0, false_alarms = 0, cells = 0, suspicions = 0;
   std::uint64_t state = 5;
   const auto count = [&](const std::string& name, const std::string& where, bool right,
                          const std::vector<DataProblem>& found) {
@@ -229,17 +272,18 @@ TEST_CASE("what is written down differently on one side is found and named, and 
   };
   const auto is_clean = [&](const std::string& where, const std::vector<DataProblem>& found) {
     ++clean;
-    bool alarm = false;
-    for (const DataProblem& one : found) alarm = alarm || one.certain || one.kind == Kind::left_out;
-    false_alarms += alarm;
-    suspicions += !alarm && !found.empty();
+    bool alarm = false, left_out = false, suspected = false;
+    for (const DataProblem& one : found)
+      (one.kind == Kind::left_out ? left_out : one.certain ? alarm : suspected) = true;
+    false_alarms += alarm, cells += left_out, suspicions += suspected && !alarm;
     if (!found.empty() && verbose) std::printf("clean %s:%s\n", where.c_str(), told(found).c_str());
   };
-  for (int number = 1; number <= 24; ++number) {
-    const std::string name = (number < 10 ? "case-0" : "case-") + std::to_string(number);
-    const Campaign real = withheld_campaign(name, "real"), sim = withheld_campaign(name, "sim");
-    const ThermalNetwork machine =
-        read_machine(std::string(THERMFIT_SOURCE_DIR) + "/data/withheld/" + name + "/machine.json", library);
+  for (const std::string& folder : folders()) {
+    const std::string name = fs::path(folder).filename().string();
+    const ThermalNetwork machine = read_machine(folder + "/machine.json", library);
+    const Campaign real = batches_in(folder + "/real");
+    const Campaign sim = fs::exists(folder + "/sim") ? batches_in(folder + "/sim") : simulated(machine, real, library);
+    REQUIRE(real.size() > 5);
     const Campaign some(real.begin() + 2, real.begin() + 6), their(sim.begin() + 2, sim.begin() + 6);
     is_clean(name + " network", by_network(machine, real, library));
     is_clean(name + " outputs", by_outputs(real, sim));
@@ -278,8 +322,12 @@ TEST_CASE("what is written down differently on one side is found and named, and 
     if (verbose || row.found < row.of) std::printf("%-40s %d of %d\n", name.c_str(), row.found, row.of);
     found += row.found, of += row.of;
   }
-  std::printf("%d of %d planted faults found and named; %d false alarms, %d suspicions in %d clean campaigns\n", found,
-              of, false_alarms, suspicions, clean);
-  CHECK(found >= .95 * of);
+  std::printf(
+      "%d of %d planted faults found and named; %d false alarms, %d suspicions and %d with cells left out in %d clean "
+      "campaigns\n",
+      found, of, false_alarms, suspicions, cells, clean);
   CHECK(false_alarms == 0);
+  if (std::getenv("THERMFIT_CAMPAIGNS")) return;  // generated ones have loose cables, and no displacement now and then
+  CHECK(found >= .95 * of);
+  CHECK(cells == 0);
 }

@@ -79,6 +79,29 @@ TEST_CASE("all rules for ambient, start and displacement survive the round trip"
   CHECK(machine_to_json(machine_from_json(changed, "m.json", library))["displacement"] == changed["displacement"]);
 }
 
+TEST_CASE("a machine tells how its batches are written, and whether its probe is absolute", "[network][json]") {
+  Json told = document();
+  const std::string z = machine_from_json(told, "m.json", library).displacements[0].output;
+  told["channels"] = {{z, {{"unit", "0.1 um"}, {"sign", "correction"}}}, {"T1", {{"unit", "K"}}}};
+  told["displacement"]["datum"] = "absolute";
+  const ThermalNetwork network = machine_from_json(told, "m.json", library);
+  REQUIRE(network.channels.size() == 2);
+  CHECK(network.displacements[0].absolute);
+  CHECK(machine_to_json(network)["channels"] == told["channels"]);
+  CHECK(machine_to_json(network)["displacement"]["datum"] == "absolute");
+  const auto channel = [&](const char* name, Json value) {
+    return complaint([&](Json& machine) { machine["channels"] = {{name, std::move(value)}}; });
+  };
+  CHECK(contains(channel("T9x", {{"unit", "K"}}),
+                 "m.json: channels: no thermometer and no displacement is called 'T9x'"));
+  CHECK(contains(channel("T1", {{"unit", "mm"}}), "m.json: channels.T1.unit: 'mm' is no unit of it; allowed: "));
+  CHECK(contains(channel("T1", {{"sign", "error"}}), "m.json: channels.T1"));
+  CHECK(contains(channel(z.c_str(), {{"sign", "minus"}}), ".sign: "));
+  CHECK(contains(channel(z.c_str(), {{"unit", "-um"}}), "is no unit of it"));
+  CHECK(contains(complaint([](Json& machine) { machine["displacement"]["datum"] = "mine"; }),
+                 "m.json: displacement.datum: "));
+}
+
 TEST_CASE("every mistake in a machine file is told with its key path", "[network][json]") {
   CHECK(complaint([](Json&) {}) == "accepted");
   const auto check = [](const std::string& part, auto change) { CHECK(contains(complaint(change), part)); };

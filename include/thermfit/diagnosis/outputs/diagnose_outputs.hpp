@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,7 +20,9 @@
 #include "thermfit/diagnosis/sides/bad_cells.hpp"
 #include "thermfit/diagnosis/sides/compare_clocks.hpp"
 #include "thermfit/diagnosis/sides/compare_sides.hpp"
+#include "thermfit/diagnosis/sides/free_datum.hpp"
 #include "thermfit/diagnosis/sides/unlike_sides.hpp"
+#include "thermfit/statistics/held_levels.hpp"
 #include "thermfit/statistics/parallel.hpp"
 #include "thermfit/statistics/reading_step.hpp"
 
@@ -415,6 +418,19 @@ class OutputsDiagnosis {
     result_.weaker_claims = claims_of_outputs<Scalar>(campaign_, beside);
     result_.next_experiment =
         named ? experiment_by_kind(result_.effects[0], library_, hours) : experiment_without_rivals(result_, hours);
+    for (PlannedBlock& block : result_.next_experiment.plan)
+      if (block.kind == ScheduleKind::toggle && !is_set(block.subject))
+        block = block_that_shows(ScheduleKind::idle_day, "", block.machine_hours);
+  }
+
+  /// Whether somebody sets this input, so that it can be switched; no thermometer can.
+  bool is_set(const std::string& input) const {
+    const auto at = std::find(campaign_.inputs.begin(), campaign_.inputs.end(), input);
+    if (at == campaign_.inputs.end()) return false;
+    HeldLevels held;
+    for (const PairedBatch& batch : campaign_.batches)
+      count_held(held, batch.inputs.col(at - campaign_.inputs.begin()));
+    return held.is_set();
   }
 
   const OutputsOptions& options_;
@@ -451,11 +467,14 @@ Diagnosis diagnose_outputs(const Campaign& real, const Campaign& simulated, cons
     unlike.simulator = SimulatorKind::outputs;
     return unlike;
   }
-  detail::OutputsDiagnosis<Scalar> diagnosis(measured.campaign, outputs.campaign, library, options);
-  problems = diagnosis.problems();
+  using OutputsDiagnosis = detail::OutputsDiagnosis<Scalar>;
+  auto diagnosis = std::make_unique<OutputsDiagnosis>(measured.campaign, outputs.campaign, library, options);
+  problems = diagnosis->problems();
+  if (start_alike<Scalar>(measured.campaign, outputs.campaign, problems))
+    diagnosis = std::make_unique<OutputsDiagnosis>(measured.campaign, outputs.campaign, library, options);
   for (WithoutBadCells* side : {&measured, &outputs})
     for (DataProblem& one : side->left_out) problems.push_back(std::move(one));
-  return sides_unlike(problems) ? diagnosis.unlike(std::move(problems)) : diagnosis.run(std::move(problems));
+  return sides_unlike(problems) ? diagnosis->unlike(std::move(problems)) : diagnosis->run(std::move(problems));
 }
 
 THERMFIT_COMPILED_TEMPLATE(Diagnosis diagnose_outputs<double>(const Campaign&, const Campaign&, const EffectLibrary&,

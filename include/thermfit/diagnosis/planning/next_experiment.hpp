@@ -148,7 +148,7 @@ constexpr double worth_pinning = .5;
 inline const ConditionShare* telling_condition(const std::vector<ConditionShare>& conditions) {
   const ConditionShare* telling = nullptr;
   for (const ConditionShare& one : conditions)
-    if (one.factor != "batch" && one.factor != "phase" &&
+    if (one.factor != "batch" && one.factor != "phase" && one.settable &&
         (!telling || one.share - one.share_of_time > telling->share - telling->share_of_time))
       telling = &one;
   return telling && telling->share > telling->share_of_time + telling_share ? telling : nullptr;

@@ -10,6 +10,7 @@
 #include "thermfit/calibration/machine_record.hpp"
 #include "thermfit/constants.hpp"
 #include "thermfit/network/schedule.hpp"
+#include "thermfit/statistics/held_levels.hpp"
 
 namespace thermfit {
 
@@ -28,7 +29,7 @@ class Menu {
   Menu(const ThermalNetwork& network, const MachineRecord& seen) : network_(network), seen_(seen) {
     const Excitation& first = seen.excitations[0];
     largest_.assign(first.input_names.size(), 0);
-    varies_.assign(first.input_names.size(), false);
+    held_.assign(first.input_names.size(), {});
     std::vector<double> spans, rooms;
     for (const Excitation& one : seen.excitations) {
       spans.push_back(one.time_s(one.samples() - 1));
@@ -38,7 +39,7 @@ class Menu {
         const MatrixX<Scalar>& inputs = one.inputs;
         const VectorX<Scalar> column = inputs.col(static_cast<Index>(i));
         largest_[i] = std::max(largest_[i], column.cwiseAbs().maxCoeff());
-        varies_[i] = varies_[i] || column.maxCoeff() > column.minCoeff();
+        count_held(held_[i], column);
       }
     }
     std::sort(spans.begin(), spans.end());
@@ -69,7 +70,9 @@ class Menu {
       menu.push_back(planned({ScheduleKind::cool_down, separates, speed, "", "", top, 1, 0}, 1.5,
                              [&](Index input, double share) { return input == main_ && share < 1. / 3 ? top : 0.; }));
       for (Index other = 0; other < static_cast<Index>(largest_.size()); ++other)
-        if (other != main_ && largest_[static_cast<std::size_t>(other)] != 0) menu.push_back(of_another(other, top));
+        if (other != main_ && largest_[static_cast<std::size_t>(other)] != 0 &&
+            held_[static_cast<std::size_t>(other)].is_set())
+          menu.push_back(of_another(other, top));
     }
     menu.push_back(planned(
         {ScheduleKind::idle_day, separates, "", "", "", 0, 1, 0}, 4, [](Index, double) { return 0.; }, room_swing_K));
@@ -136,7 +139,7 @@ class Menu {
   const ThermalNetwork& network_;
   const MachineRecord& seen_;
   std::vector<double> largest_;
-  std::vector<bool> varies_;
+  std::vector<HeldLevels> held_;
   double span_s_ = 0, room_degC_ = 20;
   Index main_ = -1;
 };

@@ -14,7 +14,15 @@
 
 namespace thermfit {
 
-/// Clocks of the two sides in other units, or from other starts, by batch of both. Allocates.
+namespace detail {
+
+/// Whether a machine can be warmed, or left alone, for that long: from a quarter of an hour to four days.
+inline bool is_campaign_span(double seconds) { return seconds >= 900 && seconds <= 4 * 86400.; }
+
+}  // namespace detail
+
+/// Clocks of the two sides in other units, or from other starts, by batch of both. Whose clock it is, where only one
+/// side lasts as long as machines are watched. Allocates.
 template <typename Scalar = double>
 std::vector<DataProblem> compare_clocks(const Campaign& real, const Campaign& sim) {
   using Kind = DataProblem::Kind;
@@ -24,6 +32,7 @@ std::vector<DataProblem> compare_clocks(const Campaign& real, const Campaign& si
     for (const bool longer : {true, false}) {
       std::vector<std::string> in;
       std::size_t paired = 0;
+      double real_s = 0, sim_s = 0;
       for (const Batch& batch : real) {
         const auto same =
             std::find_if(sim.begin(), sim.end(), [&](const Batch& one) { return one.name == batch.name; });
@@ -31,14 +40,20 @@ std::vector<DataProblem> compare_clocks(const Campaign& real, const Campaign& si
         ++paired;
         const double ratio = span(*same) / span(batch), expected = longer ? factor : 1 / factor;
         const double rows = static_cast<double>(same->rows() - 1) / static_cast<double>(batch.rows() - 1);
-        if (std::abs(std::log(ratio / expected)) < .1 && std::abs(std::log(rows)) < .7) in.push_back(batch.name);
+        if (std::abs(std::log(ratio / expected)) < .1 && std::abs(std::log(rows)) < .7) {
+          in.push_back(batch.name);
+          real_s = span(batch), sim_s = span(*same);
+        }
       }
       if (in.empty()) continue;
       DataProblem problem;
       problem.kind = Kind::clock_unit;
-      problem.side = DataProblem::Side::simulated;
+      const bool real_odd = !detail::is_campaign_span(real_s), sim_odd = !detail::is_campaign_span(sim_s);
+      problem.side = sim_odd && !real_odd   ? DataProblem::Side::simulated
+                     : real_odd && !sim_odd ? DataProblem::Side::measured
+                                            : DataProblem::Side::either;
       problem.certain = true;
-      problem.figure = longer ? factor : 1 / factor;
+      problem.figure = longer != (problem.side == DataProblem::Side::measured) ? factor : 1 / factor;
       if (in.size() < paired) problem.batches = std::move(in);
       result.push_back(std::move(problem));
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What is wrong between two sides before any effect: units, signs, exchanged and copied columns, clocks.
+/// What is wrong between two sides before any effect: units, signs, exchanged and copied columns, clocks, zeros.
 
 #include <algorithm>
 #include <utility>
@@ -8,6 +8,7 @@
 
 #include "thermfit/compiled.hpp"
 #include "thermfit/diagnosis/sides/compare_copies.hpp"
+#include "thermfit/diagnosis/sides/compare_datums.hpp"
 #include "thermfit/diagnosis/sides/compare_delays.hpp"
 #include "thermfit/diagnosis/sides/compare_displacements.hpp"
 #include "thermfit/diagnosis/sides/compare_places.hpp"
@@ -47,6 +48,7 @@ std::vector<DataProblem> compare_sides(const Sides& sides, const SideLimits& lim
   if (found.empty()) join(detail::ExchangedColumns<Scalar>(of).run());
   if (found.empty()) join(detail::CopiedColumns<Scalar>(of).run(true));
   join(detail::Delays<Scalar>(of).run());
+  for (std::size_t c = 0; c < sides.channels.size(); ++c) join(detail::Datums<Scalar>(of).run(c));
   return found;
 }
 

@@ -30,7 +30,9 @@ Sides sides_of(const ThermalNetwork& machine, const Lazy<MachineRecord, Scalar>&
   const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(machine, seen.excitations, library);
   std::vector<Index> columns;
   for (const ObservedChannel& channel : seen.channels) {
-    SideChannel one{channel.name, channel.displacement, channel.measured, {}, channel.floor};
+    SideChannel one{channel.name, channel.displacement, channel.measured, {}, channel.floor, false};
+    for (const ThermalNetwork::Displacement& output : machine.displacements)
+      if (output.output == channel.name) one.absolute = output.absolute;
     for (const Simulation& batch : simulated) one.simulated.push_back(batch.channels.col(channel.column));
     columns.push_back(channel.column);
     result.channels.push_back(std::move(one));

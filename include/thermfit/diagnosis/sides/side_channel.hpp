@@ -21,6 +21,7 @@ struct SideChannel {
   SeriesByBatch measured;     ///< NaN where a value is missing
   SeriesByBatch simulated;    ///< at the same samples
   double noise = 0;           ///< of a single reading: white, or what rounding leaves
+  bool absolute = false;      ///< a displacement whose zero is part of what is measured
 };
 
 /// The measured and the simulated campaign beside each other.

@@ -86,6 +86,13 @@ class SideWeighing {
 
   /// Directions of belief in some batches, about their means where the zero is free.
   MatrixX<Scalar> directions_of(std::size_t c, const BatchNumbers& batches) const {
+    MatrixX<Scalar> directions = uncentred_directions_of(c, batches);
+    if (channel(c).displacement) centre(directions, batches);
+    return directions;
+  }
+
+  /// The same with the zero as it is.
+  MatrixX<Scalar> uncentred_directions_of(std::size_t c, const BatchNumbers& batches) const {
     const MatrixX<Scalar> whole = sides_.belief(c);
     std::vector<Index> first{0};
     for (const Vector& time_s : sides_.time_s) first.push_back(first.back() + time_s.size());
@@ -97,7 +104,6 @@ class SideWeighing {
       directions.middleRows(rows, sides_.time_s[b].size()) = whole.middleRows(first[b], sides_.time_s[b].size());
       rows += sides_.time_s[b].size();
     }
-    if (channel(c).displacement) centre(directions, batches);
     return directions;
   }
 

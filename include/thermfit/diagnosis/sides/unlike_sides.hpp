@@ -15,9 +15,11 @@
 
 namespace thermfit {
 
-/// Whether something is certainly wrong between the sides, so that no effect may be named on top of it.
+/// Whether something is certainly wrong between the sides, so that no effect may be named on top of it. Another zero is
+/// not: it is left free.
 inline bool sides_unlike(const std::vector<DataProblem>& problems) {
-  return std::any_of(problems.begin(), problems.end(), [](const DataProblem& one) { return one.certain; });
+  return std::any_of(problems.begin(), problems.end(),
+                     [](const DataProblem& one) { return one.certain && one.kind != DataProblem::Kind::datum; });
 }
 
 /// The diagnosis of such sides: no effect, the gap as it stands, certain problems first. Allocates.

@@ -52,7 +52,10 @@ ChainSplit chain_split(const ThermalNetwork& network, const Campaign& campaign,
         if (count > 0) sensed += std::abs(um_per_K);
       }
     }
-    if (output.zero_at_first_sample && carried.size() > 0) carried.array() -= carried(0);
+    if (output.free_datum)
+      carried.array() -= carried.mean();
+    else if (output.zero_at_first_sample && carried.size() > 0)
+      carried.array() -= carried(0);
     const VectorX<Scalar> gap = errors.col(column) - channels.col(static_cast<Index>(network.sensors.size()));
     total += gap.squaredNorm();
     temperature += carried.squaredNorm();

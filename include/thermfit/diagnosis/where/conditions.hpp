@@ -9,6 +9,7 @@
 
 #include "thermfit/batch/batch.hpp"
 #include "thermfit/diagnosis/diagnosis.hpp"
+#include "thermfit/statistics/held_levels.hpp"
 
 namespace thermfit {
 
@@ -65,7 +66,9 @@ inline std::size_t level_of(const std::vector<Interval>& levels, double value) {
 /// One column of every batch, as a factor.
 template <class Column>
 void add_factor(const std::string& name, const Campaign& batches, const std::vector<Vector>& residuals, Column column,
-                std::vector<ConditionShare>& result) {
+                bool input, std::vector<ConditionShare>& result) {
+  HeldLevels held;
+  for (const Batch& batch : batches) count_held(held, column(batch));
   std::vector<double> values;
   for (const Batch& batch : batches)
     for (Index row = 0; row < batch.rows(); ++row) values.push_back(column(batch)(row));
@@ -74,7 +77,7 @@ void add_factor(const std::string& name, const Campaign& batches, const std::vec
   const bool on_off = levels.size() == 2 && levels[0].low == 0 && levels[0].high == 0;
   std::vector<ConditionShare> rows;
   for (std::size_t k = 0; k < levels.size(); ++k)
-    rows.push_back({name, on_off ? (k ? "on" : "off") : "", !on_off, levels[k], 0, 0, 0});
+    rows.push_back({name, on_off ? (k ? "on" : "off") : "", !on_off, input && held.is_set(), levels[k], 0, 0, 0});
   ShareTable table(std::move(rows));
   for (std::size_t b = 0; b < batches.size(); ++b)
     for (Index row = 0; row < residuals[b].size(); ++row)
@@ -126,18 +129,18 @@ std::vector<ConditionShare> condition_shares(const Campaign& batches, const std:
   for (Index i = 0; i < batches[0].inputs.count(); ++i)
     detail::add_factor(
         batches[0].inputs.names[static_cast<std::size_t>(i)], batches, residuals,
-        [i](const Batch& batch) { return batch.inputs.values.col(i); }, result);
+        [i](const Batch& batch) { return batch.inputs.values.col(i); }, true, result);
   const Index ambient = batches[0].temperatures.find(ambient_column);
   if (ambient >= 0)
     detail::add_factor(
         ambient_column, batches, residuals,
-        [ambient](const Batch& batch) { return batch.temperatures.values.col(ambient); }, result);
+        [ambient](const Batch& batch) { return batch.temperatures.values.col(ambient); }, false, result);
 
-  detail::ShareTable phases({{"phase", "warm-up", false, {}, 0, 0, 0},
-                             {"phase", "steady", false, {}, 0, 0, 0},
-                             {"phase", "cool-down", false, {}, 0, 0, 0}});
+  detail::ShareTable phases({{"phase", "warm-up", false, false, {}, 0, 0, 0},
+                             {"phase", "steady", false, false, {}, 0, 0, 0},
+                             {"phase", "cool-down", false, false, {}, 0, 0, 0}});
   std::vector<ConditionShare> names;
-  for (const Batch& batch : batches) names.push_back({"batch", batch.name, false, {}, 0, 0, 0});
+  for (const Batch& batch : batches) names.push_back({"batch", batch.name, false, false, {}, 0, 0, 0});
   detail::ShareTable per_batch(std::move(names));
   for (std::size_t b = 0; b < batches.size(); ++b) {
     const std::vector<ThermalPhase> phase = thermal_phases(batches[b]);

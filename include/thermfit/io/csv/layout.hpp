@@ -239,13 +239,14 @@ class LayoutMaker {
   std::string unit_of(std::size_t c, Quantity quantity) {
     const std::string in_file = unit_in_file(c);
     for (std::size_t u = 0; u < options_.units.size(); ++u) {
-      const auto& [pattern, text] = options_.units[u];
+      const auto& [pattern, text, otherwise] = options_.units[u];
       const auto said = find_unit(text);
       if (!said) throw problem("CsvOptions::units", {shown(text), " is no unit"}, {all_units()});
       if (!column(c).is_called(pattern) && (said->quantity != quantity || !(matches_glob(pattern, column(c).name) ||
                                                                             matches_glob(pattern, column(c).title))))
         continue;
       unit_used_[u] = true;
+      if (otherwise && !in_file.empty()) return text.front() == '-' ? '-' + in_file : in_file;
       const auto written = find_unit(in_file);
       if (!in_file.empty() && !(written && written->is_same_as(*said)))
         layout_.roles.contradicted.push_back(layout_.columns[c].name + " in " + text + ", the file says " + in_file);
@@ -273,7 +274,7 @@ class LayoutMaker {
   /// Throws when a unit was given for what is not there or has none.
   void require_units_used() const {
     for (std::size_t u = 0; u < options_.units.size(); ++u) {
-      if (unit_used_[u]) continue;
+      if (unit_used_[u] || options_.units[u].otherwise) continue;
       const std::string& pattern = options_.units[u].column;
       const auto called = [&](const CsvColumn& one) { return one.is_called(pattern); };
       if (std::any_of(header_.columns.begin(), header_.columns.end(), called))

@@ -28,7 +28,9 @@ enum class TimeFormat {
 /// What unit columns are in, whatever their titles say.
 struct CsvUnit {
   std::string column;  ///< name or title, or a glob that finds columns in a unit of this kind only
-  std::string unit;    ///< of time, temperature or length
+  std::string unit;    ///< of time, temperature or length; -um: the column holds corrections, not errors
+  bool otherwise =
+      false;  ///< only where the file names no unit for it, if it has such a column; the sign counts always
 };
 
 /// How to read a CSV file. The defaults read what formats.md describes; each member overrides one guess.

@@ -86,10 +86,12 @@ J machine_to_json(const ThermalNetwork& network) {
                                         {"power_W", source.power_W},
                                         {"into", detail::by_node_json<J>(network, source.into)}});
   J outputs = J::array();
-  for (const auto& output : network.displacements)
-    outputs.push_back({{"output", output.output},
-                       {"zero", output.zero_at_first_sample ? "first_sample" : "reference"},
-                       {"um_per_K", detail::by_node_json<J>(network, output.um_per_K)}});
+  for (const auto& output : network.displacements) {
+    J entry{{"output", output.output}, {"zero", output.zero_at_first_sample ? "first_sample" : "reference"}};
+    if (output.absolute) entry["datum"] = "absolute";
+    entry["um_per_K"] = detail::by_node_json<J>(network, output.um_per_K);
+    outputs.push_back(std::move(entry));
+  }
   if (outputs.size() == 1) document["displacement"] = outputs[0];
   if (outputs.size() > 1) document["displacement"] = outputs;
   if (!network.sensors.empty()) document["sensors"] = Json::object();
@@ -101,6 +103,11 @@ J machine_to_json(const ThermalNetwork& network) {
       if (share.second != 0) moved.push_back(share);
     if (!moved.empty()) entry["placement"] = detail::by_node_json<J>(network, moved);
     if (sensor.response_s != 0) entry["response_s"] = sensor.response_s;
+  }
+  for (const auto& channel : network.channels) {
+    J& entry = document["channels"][channel.column] = J::object();
+    if (!channel.unit.empty()) entry["unit"] = channel.unit;
+    if (channel.correction) entry["sign"] = "correction";
   }
   using Start = ThermalNetwork::Initial::Rule;
   document["initial"] = network.initial.share != 0               ? J(network.initial.share)

@@ -2,12 +2,14 @@
 
 /// What stands in `thermfit-machine/1`, key by key. Meant for machine.hpp.
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "thermfit/constants.hpp"
 #include "thermfit/io/json/node.hpp"
+#include "thermfit/io/units.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit::detail {
@@ -22,7 +24,7 @@ class MachineReader {
   ThermalNetwork read() {
     root_.require_format("thermfit-machine", 1);
     root_.require_keys({"format", "name", "reference_temperature_C", "ambient", "nodes", "links", "heat_sources",
-                        "displacement", "sensors", "initial", "uncertainty", "effects"});
+                        "displacement", "sensors", "channels", "initial", "uncertainty", "effects"});
     if (const auto name = root_.find("name")) network_.name = name->text();
     network_.reference_degC = root_.at("reference_temperature_C").number(absolute_zero_degC, 2000);
     read_ambient(root_.at("ambient"));
@@ -35,6 +37,7 @@ class MachineReader {
         read_displacement(several ? displacement->item(i) : *displacement);
     }
     if (const auto sensors = root_.find("sensors")) read_sensors(*sensors);
+    if (const auto channels = root_.find("channels")) read_channels(*channels);
     if (const auto initial = root_.find("initial")) read_initial(*initial);
     if (const auto uncertainty = root_.find("uncertainty")) read_uncertainty(*uncertainty);
     if (const auto effects = root_.find("effects"))
@@ -116,11 +119,12 @@ class MachineReader {
   }
 
   void read_displacement(const Node& node) {
-    node.require_keys({"output", "zero", "um_per_K"});
+    node.require_keys({"output", "zero", "datum", "um_per_K"});
     ThermalNetwork::Displacement& added = network_.displacements.emplace_back();
     added.output = node.at("output").text();
     if (const auto zero = node.find("zero"))
       added.zero_at_first_sample = zero->choice({"first_sample", "reference"}) == "first_sample";
+    if (const auto datum = node.find("datum")) added.absolute = datum->choice({"per_batch", "absolute"}) == "absolute";
     added.um_per_K = by_node(node.at("um_per_K"));
   }
 
@@ -137,6 +141,44 @@ class MachineReader {
       if (const auto offset = sensor.find("offset_K")) added.offset_K = offset->number();
       if (const auto placement = sensor.find("placement")) added.placement = by_node(*placement);
       if (const auto response = sensor.find("response_s")) added.response_s = response->number();
+    }
+  }
+
+  void read_channels(const Node& object) {
+    if (!object.json().is_object()) object.fail("not an object", "{column: {\"unit\": name, \"sign\": \"error\"}}");
+    std::vector<std::string> temperatures, errors;
+    for (const auto& sensor : network_.sensors) temperatures.push_back(sensor.column);
+    if (!network_.ambient.column.empty()) temperatures.push_back(network_.ambient.column);
+    for (const auto& output : network_.displacements) errors.push_back(output.output);
+    const auto in = [](const std::vector<std::string>& list, const std::string& name) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    for (const auto& [column, value] : object.json().items()) {
+      const Node channel = object.at(column);
+      const bool error = in(errors, column);
+      if (!error && !in(temperatures, column)) {
+        std::vector<std::string> known = temperatures;
+        known.insert(known.end(), errors.begin(), errors.end());
+        object.fail("no thermometer and no displacement is called '" + column + "'", name_list(known),
+                    "correct the name" + did_you_mean(column, known));
+      }
+      if (error)
+        channel.require_keys({"unit", "sign"});
+      else
+        channel.require_keys({"unit"});
+      ThermalNetwork::Channel& added = network_.channels.emplace_back();
+      added.column = column;
+      if (const auto unit = channel.find("unit")) {
+        added.unit = unit->text();
+        const Quantity quantity = error ? Quantity::length : Quantity::temperature;
+        const auto found = find_unit(added.unit);
+        if (!found || found->quantity != quantity || found->numerator < 0)
+          unit->fail("'" + added.unit + "' is no unit of it",
+                     std::string(unit_names(quantity)) + ", also with a factor",
+                     "such as " + std::string(error ? "mm or 0.1 um" : "K or 0.1 degC"));
+      }
+      if (const auto sign = channel.find("sign"))
+        added.correction = sign->choice({"error", "correction"}) == "correction";
     }
   }
 

@@ -100,6 +100,12 @@ class Readings {
         one.law(series, tangents, owner.values.data(), owner.columns.data());
         block = tangents;
       }
+      if (output.free_datum) {
+        series.array() -= double(series.mean());
+        const RowVectorX<Scalar> mean = block.colwise().mean();
+        block.rowwise() -= mean;
+        continue;
+      }
       if (!output.zero_at_first_sample) continue;
       series.array() -= double(series(0));
       const RowVectorX<Scalar> first = block.row(0);

@@ -103,6 +103,7 @@ void add_channels(Lazy<ThermalSystem, Scalar>& system, const Lazy<ThermalNetwork
   for (std::size_t i = 0; i < network.displacements.size(); ++i) {
     ThermalSystem::Displacement output;
     output.zero_at_first_sample = network.displacements[i].zero_at_first_sample;
+    output.free_datum = network.displacements[i].free_datum;
     output.um_per_K = network.displacements[i].um_per_K;
     for (std::size_t k = 0; k < output.um_per_K.size(); ++k) output.columns.push_back(column(Kind::expansion, i, k));
     system.displacements.push_back(std::move(output));
