@@ -75,6 +75,12 @@ int run(const std::vector<std::string>& words, Console::Wording wording) {
       return code(Exit::done);
     }
     if (first == "help") {
+      for (const HelpTopic& topic : help_topics()) {
+        if (topic.name != words[1]) continue;
+        console.print(topic.text());
+        console.finish();
+        return code(Exit::done);
+      }
       const Command* command = find_command(words[1]);
       return command ? run_command(*command, {"--help"}, console) : unknown_command(words[1], console);
     }

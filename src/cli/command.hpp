@@ -35,6 +35,15 @@ struct Command {
 /// The commands, in the order of the work; defined in commands/all.cpp.
 const std::vector<Command>& all_commands();
 
+/// A text that `thermfit help NAME` prints.
+struct HelpTopic {
+  std::string name, summary;
+  std::string (*text)();
+};
+
+/// What help there is besides that of commands; defined in commands/all.cpp.
+const std::vector<HelpTopic>& help_topics();
+
 /// Runs the command that `words` (argv without the program) names; prints errors in the `wording` of
 /// the command line (none: as they come); returns the process exit code.
 int run(const std::vector<std::string>& words, Console::Wording wording = nullptr);

@@ -39,9 +39,9 @@ std::string overview() {
   for (const Command& command : all_commands())
     text += "  " + command.name + std::string(11 - std::min<std::size_t>(10, command.name.size()), ' ') +
             command.summary + '\n';
-  text +=
-      "\n'thermfit COMMAND -h' is a short help, '--help' the whole one; 'thermfit --version'.\n"
-      "Exit codes: 0 done; 1 done and the finding is negative; 2 could not be done.\n";
+  text += "\n'thermfit COMMAND -h' is a short help, '--help' the whole one; 'thermfit --version'.\n";
+  for (const HelpTopic& topic : help_topics()) text += "'thermfit help " + topic.name + "': " + topic.summary + ".\n";
+  text += "Exit codes: 0 done; 1 done and the finding is negative; 2 could not be done.\n";
   return text;
 }
 

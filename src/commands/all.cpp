@@ -1,4 +1,5 @@
 #include "commands/commands.hpp"
+#include "options/campaign_options.hpp"
 
 namespace thermfit::cli {
 
@@ -20,6 +21,11 @@ const std::vector<Command>& all_commands() {
   };
   // clang-format on
   return commands;
+}
+
+const std::vector<HelpTopic>& help_topics() {
+  static const std::vector<HelpTopic> topics{{"dialects", "names for the files of some loggers", dialects_help}};
+  return topics;
 }
 
 }  // namespace thermfit::cli

@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cli/table.hpp"
 #include "thermfit/findings/copy_findings.hpp"
+#include "thermfit/io/csv/named_dialect.hpp"
 #include "thermfit/io/files/file_identity.hpp"
 #include "thermfit/io/nearest.hpp"
 #include "thermfit/io/units.hpp"
+#include "thermfit/number.hpp"
 
 namespace thermfit::cli {
 namespace {
@@ -81,6 +84,14 @@ std::vector<std::string> files_like(const std::string& pattern) {
   return files;
 }
 
+std::string dialect(const Arguments& arguments) {
+  std::vector<std::string> names{"auto"};
+  for (const NamedDialect& one : named_dialects) names.emplace_back(one.name);
+  names.emplace_back("none");
+  const std::string name = arguments.choice("--dialect", names, "auto");
+  return name == "auto" ? "" : name;
+}
+
 char separator(const Arguments& arguments) {
   const std::string given = arguments.value_or("--delimiter", "auto");
   if (given.size() == 1 && given.find_first_of(",;\t| ") == 0) return given.front();
@@ -112,6 +123,15 @@ std::string of_side(const Arguments& arguments, const std::string& option, Campa
   return side == CampaignSide::simulated && arguments.has(own) ? own : option;
 }
 
+/// A number of seconds, or of the unit behind it.
+double time_step_s(const std::string& text) {
+  const auto number = parse_number(text);
+  const auto unit = number ? find_unit("s") : find_unit(text);
+  const double step = !unit || unit->quantity != Quantity::time ? 0 : unit->to_canonical(number.value_or(1));
+  if (!(step > 0)) throw UsageError("--time-step is '" + text + "'; allowed: a time above 0, as 10 (s), 100ms, 5min");
+  return step;
+}
+
 /// `Z=mm`: the last equals sign divides, so that a name may have one.
 std::vector<CsvUnit> units(const Arguments& arguments, const std::string& option) {
   std::vector<CsvUnit> all;
@@ -137,17 +157,28 @@ std::vector<Option> campaign_options() {
       {"--errors", "NAMES", "thermal errors (default: those of X, Y, Z that there are)", 0, true},
       {"--inputs", "NAMES", "known inputs (default: every other column of numbers; none: none of them)", 0, true},
       {"--time-column", "NAME",
-       "the clock, or 'none' (default: time_s, time_min, time_h, Time, t, or the column of dates and times)", 0, false},
+       "the clock, or 'none'; a name that several columns have, or a glob: each is the clock of the columns right of "
+       "it "
+       "(default: time_s, time_min, time_h, Time, t, or the column of dates and times)",
+       0, false},
+      {"--between", "HOW",
+       "linear or held: what channels with clocks of their own are between their samples (default: linear)", 0, false},
       {"--time-unit", "UNIT", "unit of a clock that names none: us, ms, s, min, h, d (default: min)", 0, false},
       {"--time-format", "FORMAT",
        "day-first, month-first (4/5/2026), unix-s, unix-ms (since 1970), or days (as spreadsheets count); default: "
        "from the file, told, and an error where it leaves that open",
        0, false},
+      {"--time-step", "TIME",
+       "rows are so far apart, as 10, 100ms or 5min, whatever a clock says (default: a clock tells)", 0, false},
       {"--units", "NAME=UNIT,…",
        "units of temperatures, errors and the clock, such as 'Z=mm,T*=degF'; they win over the file's (default: as "
        "written behind the names or below them; else degC, um)",
        0, true},
       {"--batch-column", "NAME", "split each file into batches by this column (default: a file is a batch)", 0, false},
+      {"--long", "NAME,VALUE",
+       "columns of names and values of a table with a line for each value (default: where titles such as variable and "
+       "value say so, told; none: never)",
+       0, true},
       {"--join", "GLOBS",
        "files like a glob are one batch that its logger split, such as 'run1_*,run2_*' (default: a file is a batch)", 0,
        true},
@@ -157,8 +188,19 @@ std::vector<Option> campaign_options() {
        "cells without a reading, as 'ERR7,-999.9', besides empty, NA, NaN, OL, ---, #NV, Overflow, Burnout and the "
        "like",
        0, true},
-      {"--header-line", "N",
-       "line of the file that holds the names (default: the first, or the one above the rows, told)", 0, false},
+      {"--dialect", "NAME",
+       "twincat, lvm, catman, benchlink, picolog, halsampler: options that fit such files, see 'thermfit help "
+       "dialects' "
+       "(default: where the file is one for sure, told; none: never)",
+       0, false},
+      {"--header-line", "N|TEXT",
+       "line of the file that holds the names, or the text it begins with (default: the first, or the one above the "
+       "rows, "
+       "told)",
+       0, false},
+      {"--units-line", "TEXT", "what a line of units above the names begins with (default: the line below the names)",
+       0, false},
+      {"--skip-columns", "NAMES", "columns that are not read; a name may be a glob", 0, true},
       {"--encoding", "NAME", "latin1, cp1252, gb18030, … as iconv calls it (default: UTF-8, or UTF-16 with its mark)",
        0, false},
       {"--delimiter", "MARK", "comma, semicolon, tab, bar, or space for any number of blanks (default: from the file)",
@@ -187,6 +229,30 @@ std::vector<Option> simulated_options() {
   };
 }
 
+std::string dialects_help() {
+  std::string text =
+      "Files of some loggers and programs need several options at once; a dialect is a name for them. What else the "
+      "command line says wins. A file that is one for sure is read so without being asked, and that is told.";
+  text = wrap(text, 80, 0);
+  for (const NamedDialect& one : named_dialects) {
+    text += '\n' + std::string(one.name) + '\n' + wrap("  " + std::string(one.sets), 80, 2);
+    std::string sets;
+    const auto set = [&](const std::string& flag, std::string_view value) {
+      if (!value.empty()) sets += " " + flag + " '" + std::string(value) + "'";
+    };
+    set("--delimiter", one.separator == ' ' ? "space" : "");
+    set("--header-line", one.names_begin);
+    set("--units-line", one.units_begin);
+    set("--time-column", one.time_column);
+    set("--time-unit", one.time_unit);
+    set("--skip-columns", one.skip_columns);
+    set("--encoding", one.encoding);
+    text += wrap("  as:" + sets + (one.encoding.empty() ? "" : " where it is no UTF-8"), 80, 6);
+    text += "  " + std::string(one.example) + '\n';
+  }
+  return text;
+}
+
 Option absolute_option() {
   return {"--absolute", "", "use temperatures in degC (default: their rise since the first row of the batch)", 0,
           false};
@@ -205,7 +271,14 @@ CsvOptions csv_options(const Arguments& arguments, CampaignSide side) {
   options.encoding = arguments.value_or("--encoding", "");
   options.columns = arguments.list("--columns");
   options.missing_marks = arguments.list("--missing-marks");
-  options.header_line = static_cast<std::size_t>(arguments.integer("--header-line", 1, 100000).value_or(0));
+  options.dialect = dialect(arguments);
+  const std::string names = arguments.value_or("--header-line", "");
+  if (names.find_first_not_of("0123456789") == std::string::npos)
+    options.header_line = static_cast<std::size_t>(arguments.integer("--header-line", 1, 100000).value_or(0));
+  else
+    options.names_begin = names;
+  options.units_begin = arguments.value_or("--units-line", "");
+  options.skip_columns = arguments.list("--skip-columns");
   options.time_column = arguments.value_or(named("--time-column"), "");
   options.time_unit = arguments.value_or(named("--time-unit"), "");
   const auto unit = find_unit(options.time_unit);
@@ -220,6 +293,9 @@ CsvOptions csv_options(const Arguments& arguments, CampaignSide side) {
                         : format == "unix-ms"     ? TimeFormat::unix_ms
                         : format == "days"        ? TimeFormat::serial_days
                                                   : TimeFormat::from_file;
+  if (arguments.has("--time-step")) options.time_step_s = time_step_s(arguments.value_or("--time-step", ""));
+  options.between = arguments.choice("--between", {"linear", "held"}, "linear") == "held" ? BetweenSamples::held
+                                                                                          : BetweenSamples::linear;
   options.temperatures = arguments.list(named("--temperatures"));
   options.errors = arguments.list(named("--errors"));
   options.units = units(arguments, named("--units"));
@@ -228,6 +304,7 @@ CsvOptions csv_options(const Arguments& arguments, CampaignSide side) {
     if (*options.inputs == std::vector<std::string>{"none"}) options.inputs->clear();
   }
   options.batch_column = arguments.value_or("--batch-column", "");
+  options.long_table = arguments.list("--long");
   options.join = arguments.list("--join");
   if (!options.join.empty() && !options.batch_column.empty())
     throw UsageError("--join makes one batch of files and --batch-column several of one; say one of them");

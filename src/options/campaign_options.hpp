@@ -16,6 +16,9 @@ namespace thermfit::cli {
 /// Roles of columns, dialect, missing values: to be appended to a command's own options.
 std::vector<Option> campaign_options();
 
+/// What the dialects that have a name set, one a paragraph.
+std::string dialects_help();
+
 /// `--absolute`, for commands that fit or compare temperatures; temperature_reference() reads it.
 Option absolute_option();
 TemperatureReference temperature_reference(const Arguments& arguments);
@@ -32,8 +35,9 @@ enum class CampaignSide {
 /// What the options say about CSV files. Throws UsageError on a value that is not allowed.
 CsvOptions csv_options(const Arguments& arguments, CampaignSide side = CampaignSide::measured);
 
-/// Files, folders (their *.csv and *.csv.gz), quoted globs and `-` as a list of files; folders and globs in order of
-/// name, digits compared as numbers. Throws Error when one of them is not there or holds nothing.
+/// Files, folders (their *.csv and *.csv.gz, else *.txt, *.asc, *.lvm, *.dat and *.tsv), quoted globs and `-` as a list
+/// of files; folders and globs in order of name, digits compared as numbers. Throws Error when one of them is not there
+/// or holds nothing.
 std::vector<std::string> find_files(const std::vector<std::string>& paths);
 
 /// Reads the batches of all `paths` and says on stderr what was not plain about them. Throws UsageError without paths.

@@ -56,7 +56,7 @@ void check(const thermfit::Campaign& campaign) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const MemoryFile file(text);
-  thermfit::CsvOptions strict, drop, hold, keep;
+  thermfit::CsvOptions strict, drop, hold, keep, logger;
   strict.max_line_bytes = 1 << 14;
   drop.missing = thermfit::MissingValues::drop;
   drop.batch_column = "run";
@@ -67,7 +67,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   keep.increasing_time = false;
   keep.columns = {"time_s", "T1 [degF]", "Z"};
   keep.separator = ';';
-  for (const thermfit::CsvOptions& options : {drop, hold, keep}) {
+  hold.between = thermfit::BetweenSamples::held;
+  logger.dialect = "halsampler";
+  logger.columns = {"T1", "Z"};
+  logger.time_step_s = 0.5;
+  logger.thousands = '\'';
+  for (const thermfit::CsvOptions& options : {drop, hold, keep, logger}) {
     try {
       check(thermfit::read_campaign({file.path()}, options).batches);
     } catch (const thermfit::Error& error) {

@@ -61,10 +61,40 @@ const std::vector<Case> cases{
     {"no header", "0,20,1\n1,21,2\n",
      "a.csv:1: numbers where the names of the columns should be; allowed: a header line; add one, or name the columns: "
      "CsvOptions::columns = NAME,NAME,…"},
-    {"a clock of its own for a channel", "time,T1,time,T2\n0,20,1,20\n",
-     "a.csv:1:9: column 3 is called 'time' like column 1; allowed: one clock for all channels; rename one in the "
-     "header "
-     "line"},
+    {"clocks of channels that do not overlap", "time,T1,time,T2\n0,20,1,20\n",
+     "a.csv: has no time at which all channels are there; allowed: clocks that overlap; leave channels out, or say "
+     "CsvOptions::time_column"},
+    {"a value beside a clock without a time", "time_s,T1,time_s,T2\n0,20,0,20\n60,21,,20\n",
+     "a.csv:3: time_s.2 is missing beside a value; allowed: a time for each value"},
+    {"a clock of a channel that goes back", "time_s,T1,time_s,T2\n0,20,60,20\n60,21,0,20\n120,21,120,22\n",
+     "a.csv:3: time_s.2 stands still or goes back; allowed: time that increases from row to row"},
+    {"a channel left of all clocks", "T1,Time1,T2,Time2,Z\n20,0,20,0,1\n21,60,20,60,2\n",
+     "a.csv:1:1: T1 has no clock left of it; allowed: a clock left of each column; say CsvOptions::time_column = NAME "
+     "for one clock",
+     [](CsvOptions& options) { options.time_column = "Time*"; }},
+    {"names that begin no line", "time_s,T1\n0,20\n",
+     "a.csv: no line begins with 'Scan'; allowed: a line of names that does (CsvOptions::header_line, "
+     "CsvOptions::dialect = benchlink)",
+     [](CsvOptions& options) { options.dialect = "benchlink"; }},
+    {"a dialect that nobody knows", "time_s,T1\n0,20\n",
+     "CsvOptions::dialect: there is no 'excel'; allowed: twincat, lvm, catman, benchlink, picolog, halsampler, none",
+     [](CsvOptions& options) { options.dialect = "excel"; }},
+    {"a bad cell of a long table", "time_s;variable;value\n0;T1;20\n0;Z;1\n60;T1;warm\n60;Z;2\n",
+     "a.csv:4:7: T1 is 'warm'; " + number + "correct the cell, or leave it empty if there was no reading"},
+    {"a short line of a long table", "time_s;variable;value\n0;T1;20\n0;Z\n",
+     "a.csv:3: 2 fields under 3 names; allowed: a field for each name"},
+    {"two units of a name in a long table", "time_s;name;value;unit\n0;T1;20;degC\n60;T1;70;degF\n",
+     "a.csv:3:10: T1 in degF, before in degC; allowed: one unit for a name"},
+    {"columns of a long table that are not there", "time_s;a;b\n0;T1;20\n",
+     "a.csv: the columns of CsvOptions::long_table are not there; allowed: the column of the names and the column of "
+     "the "
+     "values",
+     [](CsvOptions& options) {
+       options.long_table = {"a", "c"};
+     }},
+    {"columns to be skipped that are not there", "time_s,T1,Z\n0,20,1\n",
+     "a.csv: no column 'Alarm' (CsvOptions::skip_columns); allowed: time_s, T1, Z",
+     [](CsvOptions& options) { options.skip_columns = {"Alarm"}; }},
     {"a quote open in the header", "time_min,\"T1\n0,20\n",
      "a.csv:1:10: a quote that is opened here and never closed; close the field on its line; a quote inside a field is "
      "written \"\""},
@@ -141,8 +171,9 @@ const std::vector<Case> cases{
      "a.csv:1:1: time_s says s, CsvOptions::time_unit says min; allowed: one unit for a column",
      [](CsvOptions& options) { options.time_unit = "min"; }},
     {"two clocks", "time_min,Time,T1\n0,0,20\n",
-     "a.csv:1:10: Time may be the time, and so may time_min; allowed: one clock; say CsvOptions::time_column = "
-     "time_min"},
+     "a.csv:1:10: Time may be the time, and so may time_min; allowed: one clock, or one left of the columns it is for; "
+     "say "
+     "CsvOptions::time_column = time_min, or a glob that finds the clocks, each left of its columns"},
     {"a column that is not there", "time_min,Temp1,Z\n0,20,1\n",
      "a.csv: no column 'Tmp1' (CsvOptions::temperatures); did you mean Temp1?; allowed: time_min, Temp1, Z",
      [](CsvOptions& options) { options.temperatures = {"Tmp1"}; }},
@@ -193,8 +224,10 @@ const std::vector<Case> cases{
     {"a quote inside a field", "time_min,T1\n0,2\"0\n",
      "a.csv:2:4: a quote inside a field; put the whole field in quotes and double the quote inside"},
     {"time standing still", "time_min,T1\n0,20\n0,21\n",
-     "a.csv:3: time_min stands still at 0 s; allowed: time that increases from row to row; split runs with "
-     "CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"},
+     "a.csv:3: time_min stands still at 0 s; allowed: time that increases from row to row; say "
+     "CsvOptions::time_step_s = SECONDS if rows are evenly apart; else split runs with CsvOptions::batch_column or "
+     "into "
+     "files, or leave time out: CsvOptions::time_column = none"},
     {"time going back", "time_min,T1\n5,20\n0,21\n",
      "a.csv:3: time_min goes back to 0 s from 300 s; allowed: time that increases from row to row; split runs with "
      "CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"},

@@ -95,16 +95,16 @@ TEST_CASE("blanks separate where nothing else does, any number of them, told; lo
   CHECK_THROWS_AS(read_text("0 20 21\n60 20.5 21.25 1\n", options), Error);
 }
 
-TEST_CASE("columns without a name or with another's get one, told; a second clock is refused", "[io]") {
+TEST_CASE("columns without a name or with another's get one, told", "[io]") {
   const CsvReading reading = read_text(",time_s,Temp,Temp,Z,,\n0,0,20,21,1,,\n1,60,21,22,2,,\n", [] {
     CsvOptions options;
     options.temperatures = {"Temp", "Temp.2"};
     return options;
   }());
   CHECK(reading.batches.front().temperatures.names == Names{"Temp", "Temp.2"});
-  CHECK(reading.batches.front().inputs.names == Names{"column1"});
+  CHECK(reading.batches.front().inputs.names.empty());  // nobody knows what a column without a name is
+  CHECK(reading.files.front().roles.nameless == Names{"column1"});
   CHECK(reading.files.front().roles.made_up == Names{"column1 (no name)", "Temp.2 (Temp again)", "column6 (no name)"});
-  CHECK_THROWS_WITH(read_text("Time,T1,Time,T2\n0,20,1,20\n"), Catch::Contains("one clock for all channels"));
 }
 
 TEST_CASE("the minus of typesetters is a minus", "[io]") {

@@ -5,6 +5,7 @@
 
 #include "thermfit/io/csv/header.hpp"
 #include "thermfit/io/csv/stamp.hpp"
+#include "thermfit/io/csv/stamp_runs.hpp"
 
 namespace thermfit::detail {
 
@@ -14,6 +15,7 @@ struct ColumnContent {
   bool has_date = false, has_time = false;             ///< of the stamps
   bool is_iso = true;                                  ///< every stamp is a date-time of ISO 8601
   OrderEvidence order;                                 ///< of day and month
+  StampRuns runs;                                      ///< of stamps that repeat
   double first = missing_value, step = missing_value;  ///< the first number, and how far the second is from it
   CellSpelling spelling;                               ///< of the numbers
   bool may_be_grouped = false;                         ///< text, but numbers if the other mark grouped thousands
@@ -79,6 +81,7 @@ inline std::vector<ColumnContent> column_contents(const CsvEvidence& evidence, c
         const bool exists = instant(*stamp, DateOrder::unknown) || instant(*stamp, DateOrder::month_first);
         content.is_iso = content.is_iso && (parse_date_time(fields[c].text) || !exists);
         content.order.look_at(*stamp);
+        content.runs.look_at(*stamp);
       }
       content.may_be_grouped = may_be_grouped(fields[c].text, dialect) && (!content.text || content.may_be_grouped);
       content.text = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct CsvEvidence {
     std::size_t number;
   };
   std::vector<Line> lines;
+  std::optional<Line> units;  ///< a line of units that stands apart: CsvOptions::units_begin
 
   explicit CsvEvidence(std::string_view head) {
     for (std::size_t number = 1; !head.empty(); ++number) {

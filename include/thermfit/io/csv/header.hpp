@@ -131,7 +131,8 @@ inline bool lacks_last_field(const CsvEvidence& evidence, char separator, std::s
   return evidence.lines.size() > 1;
 }
 
-inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, const std::string& name) {
+inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, const CsvOptions& options,
+                            const std::string& name) {
   CsvHeader header;
   const auto& first = evidence.lines.front();
   header.line = first.number;
@@ -179,12 +180,22 @@ inline CsvHeader names_read(const CsvEvidence& evidence, CsvDialect& dialect, co
                       {"unit ", units[c], " below a name that says ", unit}, {"one unit for a column"});
       if (unit.empty()) unit = units[c];
     }
-    // A third line of words, as of channel numbers, below names and units.
-    if (evidence.lines.size() > 3 && !split_line(evidence.lines[2].text, dialect.separator, fields) &&
-        fields.size() == header.columns.size() + header.empty_last_column &&
-        std::none_of(fields.begin(), fields.end(),
-                     [&](const CsvField& field) { return is_missing(field.text) || is_number_or_stamp(field.text); }))
-      header.content_lines = 3;
+  }
+  // Lines of words, as of channel numbers: below names and units, or below names that are certain.
+  const bool certain = !options.names_begin.empty() || options.header_line > 0;
+  std::size_t& taken = header.content_lines;
+  while ((dialect.unit_row || certain) && taken + 1 < evidence.lines.size() &&
+         !split_line(evidence.lines[taken].text, dialect.separator, fields) &&
+         (certain ? begins_with_a_word(fields)
+                  : fields.size() == header.columns.size() + header.empty_last_column &&
+                        std::none_of(fields.begin(), fields.end(), [&](const CsvField& field) {
+                          return is_missing(field.text) || is_number_or_stamp(field.text);
+                        })))
+    ++taken;
+  if (evidence.units && !split_line(evidence.units->text, dialect.separator, fields)) {
+    dialect.unit_row = true;
+    for (std::size_t c = 1; c < std::min(fields.size(), header.columns.size()); ++c)
+      if (header.columns[c].unit.empty()) header.columns[c].unit = fields[c].text;
   }
   return header;
 }
@@ -214,7 +225,7 @@ inline CsvHeader names_over(CsvHeader header, const CsvOptions& options, const s
 
 /// Whether the first line holds names although names are given: the options say which line does, or it has words only.
 inline bool has_names(const CsvEvidence& evidence, char separator, const CsvOptions& options) {
-  if (options.columns.empty() || options.header_line > 0) return true;
+  if (options.columns.empty() || options.header_line > 0 || !options.names_begin.empty()) return true;
   std::vector<CsvField> fields;
   return !evidence.lines.empty() && !split_line(evidence.lines.front().text, separator, fields) && is_name_line(fields);
 }
@@ -224,8 +235,8 @@ inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, c
                              const std::string& name) {
   if (evidence.lines.empty() && options.columns.empty())
     throw problem(name, {"has no line with content"}, {"a header line and rows of numbers"});
-  CsvHeader header =
-      has_names(evidence, dialect.separator, options) ? names_read(evidence, dialect, name) : names_given(options);
+  CsvHeader header = has_names(evidence, dialect.separator, options) ? names_read(evidence, dialect, options, name)
+                                                                     : names_given(options);
   if (header.line > 0 && !options.columns.empty()) header = names_over(std::move(header), options, name);
   if (header.columns.size() > options.max_columns)
     throw problem(place(name, header.line), {std::to_string(header.columns.size()), " columns"},
@@ -241,14 +252,11 @@ inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, c
       problems.add(problem(at, {"column ", std::to_string(c + 1), " has no name"}, {"a name for each column"}));
     const auto [before, fresh] = first_of_name.emplace(column.name, c + 1);
     if (fresh && !column.name.empty()) continue;
-    // A name is made up where that changes no meaning: which clock a channel belongs to cannot be made up.
-    const bool is_clock = !time_unit_in(column.name).empty();
-    if (given || is_clock) {
+    if (given) {
       problems.add(problem(at,
                            {"column ", std::to_string(c + 1), " is called ", shown(column.name), " like column ",
                             std::to_string(before->second)},
-                           {is_clock ? "one clock for all channels" : "names that differ"},
-                           {"rename one in the header line"}));
+                           {"names that differ"}));
       continue;
     }
     std::string made = column.name.empty() ? "column" + std::to_string(c + 1) : column.name + ".2";
@@ -258,6 +266,8 @@ inline CsvHeader read_header(const CsvEvidence& evidence, CsvDialect& dialect, c
       made = (column.name.empty() ? "column" + std::to_string(c + 1) : column.name) + '.' + std::to_string(n);
     header.made_up.push_back(column.name.empty() ? made + " (no name)" : made + " (" + column.name + " again)");
     CsvColumn& named = header.columns[c];
+    if (!fresh && !column.name.empty()) named.same_as = before->second;
+    named.nameless = column.name.empty();
     named.name = named.title = made;
     first_of_name.emplace(made, c + 1);
   }

@@ -51,6 +51,22 @@ class CsvLines {
                     {"line feed, or carriage return and line feed"}, {"convert: tr '\\r' '\\n' <FILE"});
   }
 
+  /// Takes what has been read, and what follows, for text of `encoding`; before the first line is taken.
+  void decode(const std::string& encoding) {
+    encoding_ = encoding;
+    const std::size_t size = end_ - begin_;
+    end_ = begin_;
+    end_ += transcode(size);
+  }
+
+  /// Puts `text` in the place of all that has not been taken; its first line is number 1.
+  void replace(const std::string& text) {
+    buffer_.assign(text.begin(), text.end());
+    begin_ = line_number_ = 0;
+    end_ = text.size();
+    at_end_ = true;
+  }
+
   const std::string& name() const { return source_.name(); }
   bool compressed() const { return source_.compressed(); }
   const std::string& encoding() const { return encoding_; }  ///< as told or found; empty: UTF-8
@@ -61,10 +77,11 @@ class CsvLines {
   /// Whole lines of the first 64 kB that have not been taken yet: the evidence for dialect and kinds of columns.
   std::string_view head() const {
     const std::string_view all = text();
-    if (at_end_ || all.size() < head_bytes) return all;
+    if (all.size() < head_bytes) return all;
     const std::size_t last = all.rfind('\n', head_bytes);
     const std::string_view lines = all.substr(0, last + 1);
-    return last != std::string_view::npos && content_lines(lines) > 1 ? lines : all.substr(0, all.rfind('\n') + 1);
+    if (last != std::string_view::npos && content_lines(lines) > 1) return lines;
+    return at_end_ ? all : all.substr(0, all.rfind('\n') + 1);
   }
 
   /// The next line without its end; false behind the last. The view holds until the next call.

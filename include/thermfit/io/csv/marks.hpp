@@ -31,11 +31,11 @@ struct MarkSeen {
 /// Counts the marks of a cell, whose place `place` tells; sets `thousands` where blanks or apostrophes group them.
 template <typename Place>
 void look_at_marks(std::string_view cell, const Place& place, MarkSeen& points, MarkSeen& commas, char& thousands) {
+  std::string_view number = trim_hidden(cell);
+  if (const auto parts = split_unit_in_cell(number)) number = parts->first;
   for (const char mark : {'.', ','}) {
     MarkSeen& seen = mark == '.' ? points : commas;
     const char other = mark == '.' ? ',' : '.';
-    std::string_view number = trim_hidden(cell);
-    if (const auto parts = split_unit_in_cell(number)) number = parts->first;
     if (number.find(mark) == std::string_view::npos) continue;
     std::size_t groups = 0;
     const bool grouped = ungrouped(number, mark, other, &groups).has_value();
@@ -46,7 +46,7 @@ void look_at_marks(std::string_view cell, const Place& place, MarkSeen& points, 
   }
   for (const char mark : {'.', ','})
     for (const char group : {' ', '\''})
-      if (thousands == 0 && ungrouped(trim_hidden(cell), group, mark)) thousands = group;
+      if (thousands == 0 && ungrouped(number, group, mark)) thousands = group;
 }
 
 /// The marks that the cells use, where `told` leaves them open (0). Throws when they use both as decimal mark, or when

@@ -41,6 +41,30 @@ inline bool is_name_line(const std::vector<CsvField>& fields) {
   return 2 * filled >= fields.size() && filled > 1 && 2 * words > filled;
 }
 
+/// Whether the first field of a line that holds something is a word, which rows do not begin with.
+inline bool begins_with_a_word(const std::vector<CsvField>& fields) {
+  for (const CsvField& field : fields)
+    if (!is_missing(field.text)) return !is_spelled_number(field.text) && !parse_stamp(field.text);
+  return false;
+}
+
+/// The last line above the rows that begins with `text`; as many as there are lines where none does.
+inline std::size_t line_that_begins(const CsvEvidence& evidence, std::string_view text) {
+  std::size_t found = evidence.lines.size();
+  std::vector<CsvField> fields;
+  for (std::size_t i = 0; i < evidence.lines.size(); ++i) {
+    std::string_view line = trim(evidence.lines[i].text);
+    if (!line.empty() && line.front() == '"') line.remove_prefix(1);
+    if (starts_with(line, text)) {
+      found = i;
+      continue;
+    }
+    for (const char separator : {',', ';', '\t'})
+      if (found < i && !split_line(evidence.lines[i].text, separator, fields) && is_number_line(fields)) return found;
+  }
+  return found;
+}
+
 /// How many content lines stand before the names: 0 where the first line has as many fields as the rows, and where no
 /// line right above the rows can be their names. The rows are the longest run of lines of numbers with one count of
 /// fields; three are needed. Where `names_given` names are given, so many fields are, and the rows need no names.

@@ -6,24 +6,14 @@
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
-#include "thermfit/batch/joined.hpp"
 #include "thermfit/compiled.hpp"
+#include "thermfit/io/csv/join_files.hpp"
+#include "thermfit/io/csv/reading.hpp"
 #include "thermfit/io/csv/rows.hpp"
 #include "thermfit/io/files/batch_digest.hpp"
 #include "thermfit/io/files/file_identity.hpp"
 
 namespace thermfit {
-
-/// Batches and what was met on the way to them.
-struct CsvReading {
-  Campaign batches;                 ///< of all files in the order given, those of one file in order of appearance
-  std::vector<CsvFile> files;       ///< what was met in each, in the order given
-  std::vector<std::string> joined;  ///< a remark for each batch of several files (CsvOptions::join)
-
-  /// Remarks a user should hear: a dialect that is not the plain one, conversions, missing values, columns left out.
-  /// The same remark about several files is made once.
-  std::vector<std::string> notes(const CsvOptions& options) const;
-};
 
 namespace detail {
 
@@ -44,14 +34,6 @@ inline Channels channels(const std::vector<std::string>& names, const GrowingBat
   for (std::size_t c = first; c < first + names.size(); ++c)
     for (std::size_t row = 0; row < rows.time_s.size(); ++row) *to++ = rows.values[row * width + c];
   return made;
-}
-
-inline std::string stem(const std::string& path) {
-  std::string name = path.substr(path.rfind('/') + 1);  // npos + 1 is 0
-  for (const std::string_view suffix : {".gz", ".csv", ".txt", ".tsv", ".asc", ".lvm", ".dat"})
-    if (name.size() > suffix.size() && lower_case(name.substr(name.size() - suffix.size())) == suffix)
-      name.erase(name.size() - suffix.size());
-  return name;
 }
 
 /// Turns rows that came newest first round, `met` of them with those left out, and counts from the oldest where the
@@ -178,62 +160,6 @@ inline void make_names_differ(Campaign& batches) {
   }
 }
 
-inline bool is_like(const std::string& glob, const std::string& path) {
-  return matches_glob(glob, path) || matches_glob(glob, path.substr(path.rfind('/') + 1)) ||
-         matches_glob(glob, stem(path));
-}
-
-/// "run1" for run1_*.csv: what a glob says without its wildcards; the first file where it says nothing.
-inline std::string name_of_joined(const std::string& glob, const std::string& first) {
-  std::string name = stem(glob);
-  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '*' || c == '?'; }), name.end());
-  const char* const edges = "_-. ";
-  const std::size_t begin = name.find_first_not_of(edges);
-  return begin == std::string::npos ? first : name.substr(begin, name.find_last_not_of(edges) - begin + 1);
-}
-
-/// Makes one batch of those whose files are like a glob of CsvOptions::join, where the first of them stands.
-inline void join_files(const std::vector<std::string>& globs, CsvReading& reading) {
-  Campaign whole;
-  std::vector<std::vector<Batch>> parts(globs.size());
-  std::vector<std::size_t> places(globs.size());
-  for (Batch& batch : reading.batches) {
-    std::size_t into = globs.size();
-    for (std::size_t g = 0; g < globs.size(); ++g) {
-      if (!is_like(globs[g], batch.source)) continue;
-      if (into < globs.size())
-        throw problem(batch.source,
-                      {"is like ", shown(globs[into]), " and like ", shown(globs[g]), " (CsvOptions::join)"},
-                      {"one batch for a file"});
-      into = g;
-    }
-    if (into == globs.size()) {
-      whole.push_back(std::move(batch));
-      continue;
-    }
-    if (parts[into].empty()) {
-      places[into] = whole.size();
-      whole.emplace_back();
-    }
-    parts[into].push_back(std::move(batch));
-  }
-  for (std::size_t g = 0; g < globs.size(); ++g) {
-    if (parts[g].empty()) {
-      std::vector<std::string> names;
-      for (const CsvFile& file : reading.files) names.push_back(file.path.substr(file.path.rfind('/') + 1));
-      throw problem("CsvOptions::join", {"no file is like ", shown(globs[g])}, {"files among ", name_list(names)});
-    }
-    Batch& batch = whole[places[g]];
-    const std::size_t count = parts[g].size();
-    const std::string name = name_of_joined(globs[g], parts[g].front().name);
-    batch = joined(std::move(parts[g]), name);
-    batch.digest = batch_digest(batch);
-    reading.joined.push_back(batch.name + ": " + std::to_string(count) + (count == 1 ? " file" : " files") + " like " +
-                             globs[g] + " as one batch, the first " + batch.source);
-  }
-  reading.batches = std::move(whole);
-}
-
 }  // namespace detail
 
 /// Reads batches from files (`-`: standard input), in the order given. All have the same temperature points and errors,
@@ -279,55 +205,5 @@ CsvReading read_campaign(const std::vector<std::string>& paths, const CsvOptions
 }
 
 THERMFIT_COMPILED_TEMPLATE(CsvReading read_campaign<double>(const std::vector<std::string>&, const CsvOptions&));
-
-inline std::vector<std::string> CsvReading::notes(const CsvOptions& options) const {
-  std::vector<std::pair<std::string, std::vector<std::string>>> found;
-  const auto add = [&](const CsvFile& file, const std::string& text) {
-    for (auto& [known, paths] : found)
-      if (known == text) return paths.push_back(file.path);
-    found.push_back({text, {file.path}});
-  };
-  for (const CsvFile& file : files) {
-    if (!file.dialect.is_plain()) add(file, file.dialect.description());
-    if (file.roles.assumed_minutes)
-      add(file, file.roles.time + " names no unit: minutes (CsvOptions::time_unit tells another)");
-    if (!file.roles.clock.empty()) add(file, file.roles.clock + " (CsvOptions::time_format = FORMAT tells another)");
-    if (!file.roles.replaced.empty())
-      add(file, "the names given stand in place of those of line " + file.roles.replaced);
-    if (!file.roles.spelled.empty()) add(file, "as the cells say: " + name_list(file.roles.spelled));
-    if (!file.roles.may_be_grouped.empty())
-      add(file, "left out, numbers only if their thousands are grouped (CsvOptions::thousands = " +
-                    std::string(file.dialect.decimal_mark == '.' ? "comma" : "point") +
-                    "): " + name_list(file.roles.may_be_grouped));
-    if (!file.roles.made_up.empty()) add(file, "columns named here: " + name_list(file.roles.made_up));
-    if (file.left_out_lines > 0)
-      add(file, std::to_string(file.left_out_lines) + (file.left_out_lines == 1 ? " line" : " lines") +
-                    " left out as no rows, first " + file.first_left_out);
-    if (file.newest_first) add(file, "newest row first: turned round");
-    if (!file.roles.converted.empty()) add(file, "converted: " + name_list(file.roles.converted));
-    if (!file.roles.contradicted.empty()) add(file, "as CsvOptions::units says: " + name_list(file.roles.contradicted));
-    if (!file.roles.nearly.empty()) add(file, "taken as inputs: " + name_list(file.roles.nearly));
-    std::vector<std::string> words = file.roles.ignored;
-    words.erase(std::remove_if(words.begin(), words.end(),
-                               [&](const std::string& name) {
-                                 const auto& grouped = file.roles.may_be_grouped;
-                                 return std::find(grouped.begin(), grouped.end(), name) != grouped.end();
-                               }),
-                words.end());
-    if (!words.empty() && !options.inputs) add(file, "left out, no numbers: " + name_list(words));
-    if (file.missing == 0 || options.missing == MissingValues::keep) continue;
-    const std::string cells = std::to_string(file.missing) + (file.missing == 1 ? " missing value" : " missing values");
-    add(file, options.missing == MissingValues::drop
-                  ? std::to_string(file.dropped_rows) + (file.dropped_rows == 1 ? " row" : " rows") + " left out for " +
-                        cells + ", first " + file.first_missing
-                  : cells + " held, first " + file.first_missing);
-  }
-  std::vector<std::string> notes = joined;
-  for (const auto& [text, paths] : found)
-    notes.push_back(paths.front() +
-                    (paths.size() > 1 ? " and " + std::to_string(paths.size() - 1) + " more" : std::string()) + ": " +
-                    text);
-  return notes;
-}
 
 }  // namespace thermfit

@@ -8,6 +8,7 @@
 #include "thermfit/io/csv/cell.hpp"
 #include "thermfit/io/csv/layout.hpp"
 #include "thermfit/io/csv/lines.hpp"
+#include "thermfit/io/csv/long_table.hpp"
 
 namespace thermfit::detail {
 
@@ -29,13 +30,15 @@ struct RowCells {
 /// Makes cells of lines, each line by itself. Refers to the layout and the dialect, which may be filled in later.
 class RowParser {
  public:
-  RowParser(const CsvLayout& layout, const CsvDialect& dialect, const std::string& path, Problems& problems)
-      : layout_(layout), dialect_(dialect), path_(path), problems_(problems) {}
+  RowParser(const CsvLayout& layout, const CsvDialect& dialect, const CellPlaces& places, const std::string& path,
+            Problems& problems)
+      : layout_(layout), dialect_(dialect), places_(places), path_(path), problems_(problems) {}
 
   /// To be called when layout and dialect are known: makes room, and finds out whether no row has as many fields as
   /// there are names, which is then told of the first row only.
   void start(const CsvEvidence& evidence, const CsvHeader& header) {
-    cells_.values.resize(layout_.roles.temperatures.size() + layout_.roles.errors.size() + layout_.roles.inputs.size());
+    cells_.values.resize(layout_.roles.temperatures.size() + layout_.roles.errors.size() + layout_.roles.inputs.size() +
+                         layout_.clocks.fields.size());
     all_rows_ragged_ = no_row_fits(evidence, header);
     if (header.line > 0 && !evidence.lines.empty()) names_ = std::string(trim(evidence.lines.front().text));
   }
@@ -87,7 +90,7 @@ class RowParser {
     return false;
   }
 
-  std::string here(std::size_t column = 0) const { return place(path_, line_number_, column); }
+  std::string here(std::size_t column = 0) const { return places_.place_of(path_, line_number_, column); }
   const std::string& name_of(std::size_t field) const { return layout_.columns[field].name; }
 
   /// The fast way: plain numbers, no quotes. False when anything is out of the ordinary; then parse_carefully decides.
@@ -136,7 +139,7 @@ class RowParser {
       problems_.add(problem(here(broken->column), {broken->found}, {}, {broken->remedy}));
       return false;
     }
-    if (fields_.size() != layout_.slots.size()) {
+    if (fields_.size() != layout_.slots.size() && !ends_before_a_clock()) {
       if (all_rows_ragged_) throw ragged();  // said once
       problems_.add(ragged());
       return false;
@@ -183,6 +186,16 @@ class RowParser {
       }
     }
     return good;
+  }
+
+  /// Whether a row ends where the channels do that have the most samples; what is not there is missing then.
+  bool ends_before_a_clock() {
+    const std::vector<std::size_t>& clocks = layout_.clocks.fields;
+    if (std::find(clocks.begin(), clocks.end(), fields_.size()) == clocks.end()) return false;
+    for (std::size_t f = fields_.size(); f < layout_.slots.size(); ++f)
+      if (const CsvSlot& slot = layout_.slots[f]; slot.role == CsvRole::value || slot.role == CsvRole::date_time)
+        cells_.values[slot.index] = missing_value;
+    return true;
   }
 
   Error ragged() const {
@@ -241,12 +254,17 @@ class RowParser {
       zone_known_ = true;
       has_zone_ = parsed->has_zone;
       cells_.date_time = *parsed;
+      if (several_clocks()) clock_value(field) = static_cast<double>(parsed->seconds) + parsed->fraction;
       return true;
     }
-    if (!is_missing(text) && !is_marked(text)) return false;
+    if (!is_missing(trim_hidden(text)) && !is_marked(text)) return false;
+    if (several_clocks()) clock_value(field) = missing_value;
     cells_.missing.push_back({field, column});
     return true;
   }
+
+  bool several_clocks() const { return !layout_.clocks.fields.empty(); }
+  double& clock_value(std::size_t field) { return cells_.values[layout_.slots[field].index]; }
 
   /// A stamp as the layout reads it. While the order of day and month is open only one date may be met: differences
   /// are then the same in both.
@@ -282,6 +300,7 @@ class RowParser {
 
   const CsvLayout& layout_;
   const CsvDialect& dialect_;
+  const CellPlaces& places_;
   const std::string& path_;
   Problems& problems_;
   RowCells cells_;

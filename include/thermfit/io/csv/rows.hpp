@@ -4,46 +4,19 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "thermfit/compiled.hpp"
-#include "thermfit/io/csv/preamble.hpp"
+#include "thermfit/io/csv/clocked_rows.hpp"
+#include "thermfit/io/csv/row.hpp"
 #include "thermfit/io/csv/row_parser.hpp"
+#include "thermfit/io/csv/table_start.hpp"
 #include "thermfit/types.hpp"
 
 namespace thermfit {
-
-/// One row of a file, in thermfit's units. The views hold until the next row is asked for.
-struct CsvRow {
-  /// The values of one role, a view; NaN where one is missing and MissingValues::keep is asked for.
-  using Values = Eigen::Map<const Eigen::RowVectorXd>;
-  std::size_t line;                         ///< in the file, from 1
-  std::string_view batch;                   ///< value of the batch column; empty without one
-  double time_s;                            ///< NaN without a clock
-  Values temperatures,                      ///< degC
-      errors,                               ///< um
-      inputs;                               ///< as written
-  Index held_values = 0;                    ///< values that were missing and are the last ones of their channel
-  Index number = 0;                         ///< in its batch, from 1, counting rows that were left out
-  Values first_degC = Values(nullptr, 0);   ///< temperatures of row 1 of its batch, NaN where it has none
-  double begins_s = detail::missing_value;  ///< time 0 of its batch, since 1970; NaN where the clock tells no dates
-};
-
-/// What was met while reading one file.
-struct CsvFile {
-  std::string path;                ///< `stdin` for standard input
-  CsvDialect dialect;              ///< as found or as told
-  CsvRoles roles;                  ///< of its columns
-  std::size_t rows = 0;            ///< rows handed out
-  std::size_t missing = 0;         ///< cells without a value, in columns that are used
-  bool newest_first = false;       ///< the rows of a batch were turned round
-  std::size_t dropped_rows = 0;    ///< rows left out for a missing value: MissingValues::drop or error
-  std::size_t left_out_lines = 0;  ///< that are no rows for sure: the names again, sums and means at the end, EOF
-  std::string first_left_out;      ///< `file:line ('Max,28,24')`
-  std::string first_missing;       ///< `file:line:column (T3)`
-};
 
 /// Reads a file row by row in constant memory. Problems of rows go to `problems`; such rows are left out.
 class CsvRowReader {
@@ -53,11 +26,12 @@ class CsvRowReader {
       : options_(options),
         problems_(problems),
         lines_(path, options.max_line_bytes, options.encoding),
-        parser_(layout_, file_.dialect, file_.path, problems),
+        parser_(layout_, file_.dialect, places_, file_.path, problems),
         cells_(parser_.cells()) {
-    detail::CsvEvidence evidence(lines_.head());
     file_.path = lines_.name();
-    const std::size_t before = skip_to_names(evidence);
+    detail::TableStart start(lines_, options_, file_, places_);
+    const std::size_t before = start.find();
+    const detail::CsvEvidence& evidence = start.evidence();
     file_.dialect = detect_dialect(lines_, evidence, options_);
     const detail::CsvHeader header = detail::read_header(evidence, file_.dialect, options_, file_.path);
     layout_ =
@@ -95,16 +69,7 @@ class CsvRowReader {
 
   /// The next row that is good; false at the end, after which missing values and an absence of rows are told.
   bool next(CsvRow& row) {
-    std::string_view line;
-    while (lines_.next(line)) {
-      if (!detail::is_content(line)) continue;
-      ++seen_rows_;
-      if (!parser_.parse(line, lines_.line_number())) {
-        if (!parser_.was_no_row()) continue;
-        --seen_rows_;
-        if (file_.left_out_lines++ == 0) file_.first_left_out = here() + " (" + detail::shown(line) + ")";
-        continue;
-      }
+    while (layout_.clocks.fields.empty() ? next_line() : next_on_one_clock()) {
       if (!enter_state()) continue;
       remember_first();
       if (!settle_missing() || !check_time()) continue;
@@ -112,7 +77,7 @@ class CsvRowReader {
       const auto count = [](const auto& names) { return static_cast<Index>(names.size()); };
       const double* const values = cells_.values.data();
       const CsvRoles& roles = layout_.roles;
-      new (&row) CsvRow{lines_.line_number(),
+      new (&row) CsvRow{line_number_,
                         cells_.batch,
                         cells_.time_s,
                         {values, count(roles.temperatures)},
@@ -131,29 +96,30 @@ class CsvRowReader {
  private:
   using Role = detail::CsvRole;
 
-  /// Takes lines that stand before the names out of the evidence: what the options say, `sep=`, a preamble. How many.
-  std::size_t skip_to_names(detail::CsvEvidence& evidence) {
-    auto& lines = evidence.lines;
-    const std::size_t all = lines.size();
-    if (!lines.empty() && lines.front().number == 1)
-      if (const char told = detail::told_separator(lines.front().text)) {
-        if (options_.separator == 0) options_.separator = told;
-        lines.erase(lines.begin());
-      }
-    if (options_.header_line > 0) {
-      const auto names = std::find_if(lines.begin(), lines.end(),
-                                      [&](const auto& line) { return line.number == options_.header_line; });
-      if (names == lines.end())
-        throw detail::problem(file_.path,
-                              {"CsvOptions::header_line = ", std::to_string(options_.header_line),
-                               " is empty, a comment, or not among the first lines"},
-                              {"the number of the line that holds the names, from 1"});
-      lines.erase(lines.begin(), names);
-    } else {
-      const std::size_t before = detail::lines_before_names(evidence, options_.separator, options_.columns.size());
-      lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(before));
+  /// Fills the cells from the next line that is a row.
+  bool next_line() {
+    std::string_view line;
+    while (lines_.next(line)) {
+      if (!detail::is_content(line)) continue;
+      ++seen_rows_;
+      line_number_ = lines_.line_number();
+      if (parser_.parse(line, line_number_)) return true;
+      if (!parser_.was_no_row()) continue;
+      --seen_rows_;
+      if (file_.left_out_lines++ == 0) file_.first_left_out = here() + " (" + detail::shown(line) + ")";
     }
-    return all - lines.size();
+    return false;
+  }
+
+  /// Fills the cells from the next row of what all lines hold, put on one clock.
+  bool next_on_one_clock() {
+    if (!clocked_) {
+      clocked_ = std::make_unique<detail::ClockedRows>(layout_, options_.between, problems_);
+      while (next_line()) clocked_->take(cells_, line_number_, here());
+      clocked_->finish(file_.path);
+      file_.clocks = clocked_->told();
+    }
+    return clocked_->next(cells_, line_number_);
   }
 
   /// What is remembered of a batch from row to row.
@@ -164,6 +130,8 @@ class CsvRowReader {
     double origin_s = 0;
     bool decreasing = false, to_and_fro = false;  ///< newest row first; not all rows the same way
     Index rows_timed = 0;
+    std::size_t rows_of_stamp = 0;      ///< before this one, where stamps repeat
+    std::int64_t stamp_s = 0;           ///< the stamp of the row before
     std::int64_t days = 0, last_s = 0;  ///< midnights passed, and the row before, for times of day
     std::vector<double> held;
     std::vector<double> first_degC;
@@ -171,7 +139,7 @@ class CsvRowReader {
     Index dropped_rows = 0;
   };
 
-  std::string here(std::size_t column = 0) const { return detail::place(file_.path, lines_.line_number(), column); }
+  std::string here(std::size_t column = 0) const { return places_.place_of(file_.path, line_number_, column); }
   const std::string& name_of(std::size_t field) const { return layout_.columns[field].name; }
 
   /// Finds the batch that the row belongs to. False when its name is missing.
@@ -191,12 +159,23 @@ class CsvRowReader {
   void remember_first() {
     const auto temperatures = static_cast<std::ptrdiff_t>(layout_.roles.temperatures.size());
     if (++state_->rows == 1) state_->first_degC.assign(cells_.values.begin(), cells_.values.begin() + temperatures);
+    if (layout_.clock.row_step_s > 0 && !layout_.clock.stamps)
+      cells_.time_s = layout_.clock.row_step_s * static_cast<double>(state_->rows - 1);
     if (state_->decreasing) state_->first_degC.assign(cells_.values.begin(), cells_.values.begin() + temperatures);
     if (state_->has_origin || !layout_.clock.from_first || lacks_time()) return;
     state_->origin = cells_.date_time;
     state_->origin.seconds += cells_.date_s;
     state_->origin_s = cells_.time_s;
+    state_->rows_of_stamp = layout_.clock.rows_before;
+    shift(state_->origin, layout_.clock.row_step_s * static_cast<double>(layout_.clock.rows_before));
     state_->has_origin = true;
+  }
+
+  static void shift(DateTime& time, double seconds) {
+    time.fraction += seconds;
+    const double whole = std::floor(time.fraction);
+    time.seconds += static_cast<std::int64_t>(whole);
+    time.fraction -= whole;
   }
 
   /// Time 0 of the batch since 1970, where stamps tell dates.
@@ -269,7 +248,8 @@ class CsvRowReader {
                                   : " goes back to "),
          exact_text(cells_.time_s), " s" + (cells_.time_s == before ? "" : " from " + exact_text(before) + " s")},
         {"time that increases from row to row"},
-        {"split runs with CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"}));
+        {cells_.time_s == before ? "say CsvOptions::time_step_s = SECONDS if rows are evenly apart; else " : "",
+         "split runs with CsvOptions::batch_column or into files, or leave time out: CsvOptions::time_column = none"}));
     return false;
   }
 
@@ -287,6 +267,11 @@ class CsvRowReader {
       now.seconds += state.days * 86400;
       if (now.seconds + 43200 < state.last_s) ++state.days, now.seconds += 86400;
       state.last_s = now.seconds;
+    }
+    if (layout_.clock.rows_a_stamp > 0) {
+      if (state.rows_timed > 0) state.rows_of_stamp = now.seconds == state.stamp_s ? state.rows_of_stamp + 1 : 0;
+      state.stamp_s = now.seconds;
+      shift(now, layout_.clock.row_step_s * static_cast<double>(state.rows_of_stamp));
     }
     cells_.time_s = static_cast<double>(now.seconds - state.origin.seconds) + (now.fraction - state.origin.fraction);
   }
@@ -316,13 +301,15 @@ class CsvRowReader {
   CsvFile file_;
   detail::CsvLayout layout_;
 
+  detail::CellPlaces places_;  ///< where the cells of a long table stand in the file
   detail::RowParser parser_;
   detail::RowCells& cells_;  ///< of the row
 
   std::string current_batch_;
   std::map<std::string, State> states_;
   State* state_ = nullptr;
-  std::size_t seen_rows_ = 0;
+  std::size_t seen_rows_ = 0, line_number_ = 0;
+  std::unique_ptr<detail::ClockedRows> clocked_;  ///< where channels have clocks of their own
   bool may_decrease_ = false;
 };
 

@@ -20,6 +20,8 @@ struct CsvColumn {
   std::string title;           ///< as written
   std::string unit;            ///< as written behind the name or in the unit row; empty when not told
   std::size_t position = 0;    ///< of the title in its line, from 1
+  std::size_t same_as = 0;     ///< the number, from 1, of the first column that the file calls the same; 0: none before
+  bool nameless = false;       ///< its name is made up, as the file gives none
   bool unit_in_words = false;  ///< the unit stands behind the name without brackets: Z_mm, Z / mm, Z in mm
 
   /// Whether `text` is its name or its title, spelled exactly. Does not allocate.
