@@ -146,17 +146,27 @@ Json to_document(const TrainedModel& model, const std::vector<Predicted>& all) {
   return document;
 }
 
-/// Says which batches start in a climate that the model was not trained in.
+/// Says which batches start in a climate that the model was not trained in, and what follows.
 void note_climates(const Campaign& campaign, const TrainedModel& model, const Console& console) {
-  if (std::none_of(model.features.begin(), model.features.end(),
-                   [](const Feature& feature) { return feature.kind == FeatureKind::climate; }))
-    return;
+  if (model.blocks.empty()) return;
+  const bool in_model = std::any_of(model.features.begin(), model.features.end(),
+                                    [](const Feature& feature) { return feature.kind == FeatureKind::climate; });
   for (const Batch& batch : campaign) {
-    const double climate = model_climate_degC(model, batch);
-    if (model.climate.beyond_K(climate) > 0)
-      console.note(batch.source + ": starts at " + fixed_text(climate, 1) + " degC, beyond the climates of training (" +
-                   fixed_text(model.climate.lowest, 1) + " to " + fixed_text(model.climate.highest, 1) +
-                   " degC), and counts as the nearest of them");
+    const double climate = model_climate_degC(model, batch), beyond_K = model.climate.beyond_K(climate);
+    if (!(beyond_K > 0)) continue;
+    std::string text = batch.source + ": starts at " + fixed_text(climate, 1) + " degC, " + fixed_text(beyond_K, 1) +
+                       " K beyond the climates of training (" + fixed_text(model.climate.lowest, 1) + " to " +
+                       fixed_text(model.climate.highest, 1) + " degC), ";
+    if (!in_model) {
+      console.note(text + "and nothing in the model depends on the climate");
+      continue;
+    }
+    text += "and counts as the nearest of them: were the climate's part to go on, predictions would move further, by";
+    const Vector most_um = beyond_climate_um(model, batch);
+    for (Index e = 0; e < most_um.size(); ++e)
+      text +=
+          (e ? ", " : " ") + model.errors[static_cast<std::size_t>(e)] + " up to " + fixed_text(most_um(e), 2) + " um";
+    console.note(text);
   }
 }
 

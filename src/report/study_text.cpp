@@ -348,7 +348,16 @@ class ErrorSection {
     for (std::size_t c = 0; c < chosen.size(); ++c)
       text += (c ? "; " : " ") + chosen[c].first + " (" + std::to_string(chosen[c].second) + " of " +
               std::to_string(r_.batches.size()) + ")";
-    return text;
+    std::string beyond;
+    for (std::size_t b = 0; b < r_.transfer->beyond_K.size(); ++b) {
+      if (!(r_.transfer->beyond_K[b] >= .05)) continue;  // one decimal is told
+      beyond += (beyond.empty() ? "" : "; ") + r_.batches[b] + " by " + fixed_text(r_.transfer->beyond_K[b], 1) +
+                " K (S " + fixed_text(r_.transfer->residuals[b][e_].S(), 2) + " um";
+      if (r_.transfer->withheld_um[b][e_] > 0)
+        beyond += ", with " + fixed_text(r_.transfer->withheld_um[b][e_], 2) + " um of the climate's part held back";
+      beyond += ")";
+    }
+    return beyond.empty() ? text : text + ". Beyond the climates of the others starts " + beyond;
   }
 
   void left_out() const {

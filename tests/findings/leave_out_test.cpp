@@ -46,9 +46,10 @@ TEST_CASE("bad readings are left out as rows of their batch", "[findings]") {
   CHECK(leave_out_of(kept).nothing());
 }
 
-TEST_CASE("a sensor that is faulty in one batch is left out of all, since models need the same points", "[findings]") {
+TEST_CASE("a sensor that is faulty in some batches is left out of all, since models need the same points",
+          "[findings]") {
   Campaign campaign = vcenter55();
-  temperature(campaign[5], 7).tail(69).setConstant(temperature(campaign[5], 7)(10));
+  for (const std::size_t b : {5, 6}) temperature(campaign[b], 7).tail(69).setConstant(temperature(campaign[b], 7)(10));
   const LeaveOut left = leave_out_of(campaign);
   CHECK(left.temperatures == std::vector<std::string>{"T7"});
   CHECK(left.batches.empty());
@@ -59,6 +60,43 @@ TEST_CASE("a sensor that is faulty in one batch is left out of all, since models
     CHECK(kept[b].temperatures.count() == 9);
     CHECK(kept[b].temperatures.find("T7") == -1);
     CHECK(kept[b].temperatures.values.col(kept[b].temperatures.find("T8")) == temperature(campaign[b], 8));
+  }
+}
+
+TEST_CASE("of a faulty sensor and the batches it is faulty in, what costs fewer readings is left out", "[findings]") {
+  Campaign campaign = vcenter55();
+  const auto freeze = [&](std::size_t b, Index number) {
+    temperature(campaign[b], number).tail(69).setConstant(temperature(campaign[b], number)(10));
+  };
+  SECTION("one batch of twelve, not one point of ten") {
+    freeze(5, 7);
+    const LeaveOut left = leave_out_of(campaign);
+    CHECK(left.batches == std::vector<std::size_t>{5});
+    CHECK(left.temperatures.empty());
+    REQUIRE(!left.reasons.empty());
+    CHECK(left.reasons.front().finding.channel == "T7");
+    CHECK(left.reasons.front().what == LeaveOut::What::batch);
+  }
+  SECTION("one batch of seven, where two points of ten are faulty in it") {
+    campaign.resize(7);
+    freeze(3, 2);
+    freeze(3, 7);
+    CHECK(leave_out_of(campaign).batches == std::vector<std::size_t>{3});
+  }
+  SECTION("one point of ten, not one batch of seven") {
+    campaign.resize(7);
+    freeze(3, 7);
+    CHECK(leave_out_of(campaign).temperatures == std::vector<std::string>{"T7"});
+  }
+  SECTION("the batches, where there is one point only") {
+    for (Batch& batch : campaign) {
+      batch.temperatures.names.resize(1);
+      batch.temperatures.values.conservativeResize(batch.rows(), 1);
+    }
+    for (const std::size_t b : {2, 4, 9}) freeze(b, 1);
+    const LeaveOut left = leave_out_of(campaign);
+    CHECK(left.batches == std::vector<std::size_t>{2, 4, 9});
+    CHECK(left.temperatures.empty());
   }
 }
 

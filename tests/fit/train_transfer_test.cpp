@@ -141,3 +141,21 @@ TEST_CASE("a rise without a first reading is refused by name, an unknown clock t
   CHECK_THROWS_WITH(train_transfer(campaign), Catch::Contains("other channels"));
   CHECK_THROWS_AS(train_transfer(Campaign{}), Error);
 }
+
+TEST_CASE("a batch beyond the climates of training is predicted as at their end, and what that withholds is known",
+          "[model]") {
+  Campaign campaign = TransferMachine{20, .1, .4, 0}.campaign(10);
+  const TrainedModel model = train_transfer(campaign);
+  CHECK(beyond_climate_um(model, campaign[2]) == Vector::Zero(1));
+  Batch end = campaign[2];
+  end.temperatures.values.array() += model.climate.highest - model_climate_degC(model, end);
+  Batch far = end;
+  far.temperatures.values.array() += 25;
+  const Matrix clipped = predict(model, far).errors;
+  CHECK((clipped - predict(model, end).errors).norm() < 1e-9 * clipped.norm());
+  TrainedModel wider = model;  // as if the climate went on
+  wider.climate.highest += 100;
+  const Vector more = predict(wider, far).errors.col(0) - clipped.col(0);
+  CHECK(beyond_climate_um(model, far)(0) == Approx(more.cwiseAbs().maxCoeff()).epsilon(1e-9));
+  CHECK(beyond_climate_um(model, far)(0) > 1);
+}

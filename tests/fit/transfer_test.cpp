@@ -143,3 +143,21 @@ TEST_CASE("two errors are chosen for each by itself, one batch is refused", "[fi
   CHECK((fit_transfer(batches, 1).coefficients.rise - alone).norm() < 1e-9 * alone.norm());
   CHECK_THROWS_AS(fit_transfer(std::vector<TransferBatch<>>{batches[0]}, 0), Error);
 }
+
+TEST_CASE("the clip bounds what a climate can do: beyond training no climate takes a prediction further", "[fit]") {
+  Campaign campaign = TransferMachine{20, .1, .3, 0}.campaign(12);
+  TransferOptions options;
+  options.intercept = false;
+  const TransferFit<> fit = fit_transfer(seen(campaign), 0, options);
+  REQUIRE(fit.coefficients.climate.norm() > 0);
+  Campaign far{campaign[4], campaign[4]};
+  const double own = far[0].temperatures.values.row(0).mean();
+  far[0].temperatures.values.array() += fit.climate.highest - own;
+  far[1].temperatures.values.array() += fit.climate.highest + 30 - own;
+  const std::vector<TransferBatch<>> at = seen(far, visible_lags_min(campaign));
+  CHECK(residuals(fit, at[1], 0).S() == Approx(residuals(fit, at[0], 0).S()).epsilon(1e-9));
+  CHECK(withheld_by_climate_um(fit, at[0]) == Approx(0).margin(1e-9));
+  const Matrix rise = model_temperatures(far[1], TemperatureReference::rise);
+  CHECK(withheld_by_climate_um(fit, at[1]) ==
+        Approx(30 * (rise * fit.coefficients.climate).norm() / std::sqrt(rise.rows())).epsilon(1e-6));
+}

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,11 +44,40 @@ struct LeaveOut {
   bool nothing() const { return reasons.empty(); }
 };
 
+namespace detail {
+
+/// Marks as `out` the batches that are better left out than their faulty temperatures: a point is one in so many of
+/// every batch, a batch is one in so many of every point, and what costs fewer readings goes. A point that was bad on
+/// one day of many stays a point of the model.
+inline void fewest_readings(std::vector<std::vector<std::string>> faulty, std::size_t points, std::vector<bool>& out) {
+  for (bool moved = true; moved;) {
+    moved = false;
+    std::size_t batches = 0;
+    std::map<std::string, std::vector<std::size_t>> where;  // by point: the batches that it is faulty in
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      if (out[b]) continue;
+      ++batches;
+      for (const std::string& name : faulty[b]) where[name].push_back(b);
+    }
+    std::map<std::size_t, std::size_t> own;  // by batch: how many are faulty nowhere else
+    for (const auto& [name, in] : where)
+      if (in.size() == 1) ++own[in.front()];
+    for (const auto& [b, saved] : own)
+      if (!moved && points < saved * batches) moved = out[b] = true;
+    for (const auto& [name, in] : where)
+      if (!moved && in.size() * points < batches)
+        for (const std::size_t b : in) moved = out[b] = true;
+  }
+}
+
+}  // namespace detail
+
 /// What of `campaign` is better left out for the `findings` that find_faults(Campaign) made of it.
 ///
 /// Bad rows (spikes, impossible numbers, short freezes) are left out as rows. A temperature that is faulty in more than
-/// `rows_share` of a batch is left out of all batches, unless more than `points_share` of that batch's temperatures
-/// are, or its copy or error is at fault: then the batch is left out. An error at fault in every batch is left out
+/// `rows_share` of a batch is left out of all batches, or those batches are left out: what costs fewer readings
+/// (detail::fewest_readings). A batch is also left out when more than `points_share` of its temperatures are faulty, or
+/// its copy or error is at fault. An error at fault in every batch is left out
 /// itself. A jump leaves out the shorter side of its batch. What is worth knowing only (a late probe, a gap in time,
 /// collinear points, missing values) leaves out nothing. Allocates.
 inline LeaveOut leave_out(const Campaign& campaign, const CampaignFindings& findings,
@@ -97,6 +127,8 @@ inline LeaveOut leave_out(const Campaign& campaign, const CampaignFindings& find
              limits.points_share * static_cast<double>(batch.temperatures.count());
     for (const Fault& fault : faults) out[b] = out[b] || (fault.batch == b && fault.unfit == Unfit::batch);
   }
+  if (!campaign.empty())
+    detail::fewest_readings(faulty_temperatures, static_cast<std::size_t>(campaign.front().temperatures.count()), out);
 
   LeaveOut result;
   result.rows.resize(campaign.size());

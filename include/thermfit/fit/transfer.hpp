@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,16 @@ TransferFit<Scalar> fit_transfer(const std::vector<TransferBatch<Scalar>>& batch
 template <typename Scalar>
 Residuals<Scalar> residuals(const TransferFit<Scalar>& fit, const TransferBatch<Scalar>& batch, Index error) {
   return residuals(fit.coefficients, batch, fit.penalties.lag_index, fit.climate.factor(batch.climate_degC), error);
+}
+
+/// Root mean square over `batch` of how much further a fit would predict, um, were the climate's part to go on beyond
+/// the climates it was fitted in as within them; 0 within. That much clipping the climate withholds.
+template <typename Scalar>
+Scalar withheld_by_climate_um(const TransferFit<Scalar>& fit, const TransferBatch<Scalar>& batch) {
+  const VectorX<Scalar>& g = fit.coefficients.climate;
+  const MatrixX<Scalar>& products = batch.products[fit.penalties.lag_index];
+  const Scalar square = g.dot(products.topLeftCorner(g.size(), g.size()) * g);
+  return fit.climate.beyond_K(batch.climate_degC) * std::sqrt(std::max(Scalar(0), square));
 }
 
 THERMFIT_COMPILED_TEMPLATE(TransferFit<double> fit_transfer<double>(const std::vector<const TransferBatch<double>*>&,

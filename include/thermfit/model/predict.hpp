@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -89,6 +90,29 @@ MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
   return feature_columns(model.features, chosen,
                          VectorX<Scalar>(detail::lazy<Scalar>(batch.time_s).template cast<Scalar>()),
                          static_cast<Scalar>(model.climate.factor(climate_degC(*counted, columns))));
+}
+
+/// How much further each error would be predicted to move at most over the rows of `batch`, um, were the climate's part
+/// of the model to go on beyond the climates of training as within them: what clipping the climate withholds, so that
+/// no climate takes a prediction further than those of training do. 0 within them. Errors as model_inputs. Allocates.
+template <typename Scalar = double>
+Vector beyond_climate_um(const TrainedModel& model, const Batch& batch) {
+  Vector most = Vector::Zero(model.model.errors());
+  const detail::CountedBatch counted(model, batch);
+  const std::vector<Index> columns = detail::columns_of(model, batch);
+  const auto beyond_K = static_cast<Scalar>(model.climate.beyond_K(climate_degC(*counted, columns)));
+  if (!(beyond_K > 0) || batch.rows() == 0) return most;
+  const MatrixX<Scalar> rises = model_temperatures<Scalar>(*counted, model.reference)(Eigen::all, columns);
+  MatrixX<Scalar> slopes = MatrixX<Scalar>::Zero(rises.cols(), most.size());
+  for (std::size_t f = 0; f < model.features.size(); ++f)
+    if (model.features[f].kind == FeatureKind::climate)
+      for (Index e = 0; e < most.size(); ++e)
+        slopes(model.features[f].point, e) = static_cast<Scalar>(model.model.coefficients(static_cast<Index>(f), e));
+  const MatrixX<Scalar> withheld = beyond_K * rises * slopes;
+  for (Index e = 0; e < most.size(); ++e)
+    for (Index row = 0; row < withheld.rows(); ++row)
+      if (std::isfinite(withheld(row, e))) most(e) = std::max(most(e), std::abs(static_cast<double>(withheld(row, e))));
+  return most;
 }
 
 namespace detail {
