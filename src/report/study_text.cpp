@@ -357,7 +357,7 @@ class ErrorSection {
         beyond += ", with " + fixed_text(r_.transfer->withheld_um[b][e_], 2) + " um of the climate's part held back";
       beyond += ")";
     }
-    return beyond.empty() ? text : text + ". Beyond the climates of the others starts " + beyond;
+    return beyond.empty() ? text : text + ". Beyond the climates of the others start: " + beyond;
   }
 
   void left_out() const {
