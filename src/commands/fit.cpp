@@ -34,7 +34,10 @@ const char* const details =
     "lag, and those times the climate (how warm the machine is where a batch starts), by ridge with a penalty for "
     "each. "
     "Penalties and lag are chosen by leaving batches out, and what does not pay vanishes; predict takes such a model. "
-    "--error-reference start goes well with it.\n"
+    "--error-reference start goes well with it. --features adds known inputs (a column such as spindle_rpm: its change "
+    "since the first row, and through the lag from 0) and differences (T3-T5), each kind with a penalty of its own; a "
+    "model "
+    "keeps them in um per unit of the column, and predict then needs the column.\n"
     "--json prints the model document instead of words.";
 
 std::vector<Index> chosen_points(const Campaign& campaign, const Arguments& arguments, TrainingPlan& plan,
@@ -127,10 +130,10 @@ Exit fit_to_transfer(const Campaign& campaign, const Arguments& arguments, Train
                      const std::optional<std::string>& output, Console& console) {
   for (const char* option : {"--absolute", "--row-wise", "--each-batch", "--components", "--ridge-lambda"})
     if (arguments.has(option)) throw UsageError(std::string(option) + " does not go with --method transfer");
-  TransferPlan plan = transfer_plan(arguments, points_of.error_reference);
+  TransferPlan plan = transfer_plan(arguments, campaign, points_of.error_reference);
   plan.points = chosen_points(campaign, arguments, points_of, campaign.front().temperatures.count());
   plan.selection = points_of.selection;
-  note_lacking_blocks(campaign, plan, console);
+  note_lacking_blocks(arguments, campaign, plan, console);
   const TrainedModel model = train_transfer(campaign, plan);
   note_limits(model, points_of, "", console);
   deliver(

@@ -224,6 +224,9 @@ Exit run_predict(const Arguments& arguments, Console& console) {
   if (options.errors.empty()) options.errors = model.errors;
   options.errors_may_lack = options.inputs_may_lack = true;
   if (!options.inputs) options.inputs = std::vector<std::string>{};
+  for (const std::string& input : model.known_inputs)
+    if (std::find(options.inputs->begin(), options.inputs->end(), input) == options.inputs->end())
+      options.inputs->push_back(input);
   if (arguments.has("--probe") && std::find(options.inputs->begin(), options.inputs->end(),
                                             arguments.value_or("--probe", "")) == options.inputs->end())
     options.inputs->push_back(arguments.value_or("--probe", ""));

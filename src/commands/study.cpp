@@ -87,8 +87,8 @@ Exit run_study(const Arguments& arguments, Console& console) {
   StudyReport report;
   report.reference = temperature_reference(arguments);
   report.error_reference = error_reference(arguments);
-  const TransferPlan to_transfer = transfer_plan(arguments, report.error_reference);
   const Campaign campaign = learning_campaign(arguments, console, report.reference);
+  const TransferPlan to_transfer = transfer_plan(arguments, campaign, report.error_reference);
   note_starts(campaign, report.error_reference, true, console);
   require_errors(campaign);
   note_levels(campaign, {}, report.reference, report.error_reference, console);

@@ -45,6 +45,9 @@ void print_blocks(const TrainedModel& m, Console& console) {
   const auto penalty = [](const char* block, double value) {
     return std::string(block) + (std::isfinite(value) ? " " + general_text(value, 3) : " none");
   };
+  const auto extra = [&](const char* block, double value) {
+    return std::isfinite(value) ? ", " + penalty(block, value) : std::string();
+  };
   bool climate = false;
   for (std::size_t e = 0; e < m.blocks.size(); ++e) {
     const TransferRecord& r = m.blocks[e];
@@ -52,9 +55,12 @@ void print_blocks(const TrainedModel& m, Console& console) {
     console.print(
         wrap("  " + m.errors[e] + ": penalties chosen by leaving batches out: " + penalty("rise", r.rise_penalty) +
                  ", " + penalty("lag", r.lag_penalty) + (r.lag_min > 0 ? " (" + exact_text(r.lag_min) + " min)" : "") +
-                 ", " + penalty("climate", r.climate_penalty),
+                 ", " + penalty("climate", r.climate_penalty) + extra("input", r.input_penalty) +
+                 extra("lagged input", r.input_lag_penalty) + extra("difference", r.difference_penalty),
              80, 4));
   }
+  if (!m.known_inputs.empty())
+    console.print(wrap("  known inputs, in um per unit of their column: " + name_list(m.known_inputs), 80, 4));
   if (climate)
     console.print(wrap("  climate: mean of the points where a batch starts, " + fixed_text(m.climate.lowest, 1) +
                            " to " + fixed_text(m.climate.highest, 1) + " degC in training and clipped to that, less " +

@@ -159,3 +159,123 @@ TEST_CASE("a batch beyond the climates of training is predicted as at their end,
   CHECK(beyond_climate_um(model, far)(0) == Approx(more.cwiseAbs().maxCoeff()).epsilon(1e-9));
   CHECK(beyond_climate_um(model, far)(0) > 1);
 }
+
+namespace {
+
+/// Days whose error also follows a spindle that is on and off: 2 um per 1000 rpm at once, and 4 through 20 min.
+Campaign with_spindle(std::size_t days) {
+  Campaign campaign = TransferMachine{20, .1, .2, 0}.campaign(days);
+  for (std::size_t b = 0; b < days; ++b) {
+    Batch& batch = campaign[b];
+    Matrix rpm(batch.rows(), 2);
+    for (Index row = 0; row < batch.rows(); ++row) {
+      rpm(row, 0) = (row / static_cast<Index>(15 + 7 * b)) % 2 == 0 ? 500. * static_cast<double>(1 + b % 4) : 0;
+      rpm(row, 1) = static_cast<double>((17 * row + 5 * static_cast<Index>(b)) % 11);  // nothing follows it
+    }
+    batch.inputs = {{"rpm", "door"}, rpm};
+    const Vector change = rpm.col(0).array() - rpm(0, 0);
+    batch.errors.values.col(0) += .002 * change + .004 * lagged(rpm.col(0), batch.time_s, 1200.);
+  }
+  return campaign;
+}
+
+Index feature(const TrainedModel& model, const std::string& name) {
+  for (Index f = 0; f < model.inputs(); ++f)
+    if (model.input_name(f) == name) return f;
+  return -1;
+}
+
+}  // namespace
+
+TEST_CASE("known inputs and their lags are found in um per unit", "[fit]") {
+  const Campaign campaign = with_spindle(10);
+  TransferPlan plan;
+  plan.error_reference = ErrorReference::start;
+  const TrainedModel without = train_transfer(campaign, plan);
+  CHECK(without.known_inputs.empty());
+  plan.inputs = {"rpm"};
+  const TrainedModel model = train_transfer(campaign, plan);
+  REQUIRE(model.known_inputs == plan.inputs);
+  REQUIRE(feature(model, "rpm") >= 0);
+  REQUIRE(feature(model, "rpm lag 20 min") >= 0);
+  CHECK(model.model.coefficients(feature(model, "rpm"), 0) == Approx(.002).epsilon(.1));
+  CHECK(model.model.coefficients(feature(model, "rpm lag 20 min"), 0) == Approx(.004).epsilon(.1));
+  const TransferData<> data = transfer_data(campaign, plan);
+  const TransferFit<> fit = fit_transfer(data.batches, 0, data.options);
+  for (std::size_t b = 0; b < campaign.size(); ++b) {
+    const double own = predict(model, campaign[b]).S_um(0);
+    CHECK(own == Approx(residuals(fit, data.batches[b], 0).S()).epsilon(1e-6));
+    CHECK(own < .5 * predict(without, campaign[b]).S_um(0));
+  }
+}
+
+TEST_CASE("in which unit an input is makes no difference", "[fit]") {
+  Campaign campaign = with_spindle(8);
+  TransferPlan plan;
+  plan.inputs = {"rpm", "door"};
+  const TrainedModel per_rpm = train_transfer(campaign, plan);
+  for (Batch& batch : campaign) batch.inputs.values.col(0) /= 1000;
+  const TrainedModel per_krpm = train_transfer(campaign, plan);
+  const Matrix one = predict(per_krpm, campaign[3]).errors;
+  for (Batch& batch : campaign) batch.inputs.values.col(0) *= 1000;
+  CHECK((predict(per_rpm, campaign[3]).errors - one).norm() < 1e-6 * one.norm());
+}
+
+TEST_CASE("inputs and differences that do not pay vanish, and with them the need for their columns", "[fit]") {
+  Campaign campaign = with_spindle(10);
+  for (Batch& batch : campaign)  // nothing but a rise
+    batch.errors.values.col(0) =
+        3 * (batch.temperatures.values.col(0).array() - batch.temperatures.values(0, 0)).matrix();
+  TransferPlan plan;
+  plan.inputs = {"door"};
+  plan.differences = {{"T2", "T4"}};
+  const TrainedModel model = train_transfer(campaign, plan);
+  for (Index f = 4; f < model.inputs(); ++f) CHECK(std::abs(model.model.coefficients(f, 0)) < .01);
+}
+
+TEST_CASE("a difference of two points is a feature of both, and goes with either", "[fit]") {
+  Campaign campaign = TransferMachine{20, .1, .2, 0}.campaign(9);
+  TransferPlan plan;
+  plan.differences = {{"T1", "T2"}};
+  plan.options.rise_penalty = 10;  // so that the difference pays
+  plan.options.difference_penalty = .001;
+  const TrainedModel model = train_transfer(campaign, plan);
+  const Index f = feature(model, "T1 - T2");
+  REQUIRE(f >= 0);
+  CHECK(model.model.coefficients(f, 0) != 0);
+  for (const SubstituteModel& substitute : model.substitutes)
+    CHECK((substitute.model.coefficients(f, 0) == 0) == (substitute.lost < 2));
+  const TransferData<> data = transfer_data(campaign, plan);
+  const TransferFit<> fit = fit_transfer(data.batches, 0, data.options);
+  CHECK(predict(model, campaign[5]).S_um(0) == Approx(residuals(fit, data.batches[5], 0).S()).epsilon(1e-6));
+  plan.differences = {{"T1", "T9"}};
+  CHECK_THROWS_WITH(train_transfer(campaign, plan), Catch::Contains("T9"));
+}
+
+TEST_CASE("a known input that is not there, or lacks a number, is refused by name", "[fit]") {
+  Campaign campaign = with_spindle(6);
+  TransferPlan plan;
+  plan.inputs = {"rpm"};
+  const TrainedModel model = train_transfer(campaign, plan);
+  REQUIRE(!model.known_inputs.empty());
+  CHECK_THROWS_WITH(require_no_inputs(model, "model.json"),
+                    Catch::Contains("model.json: transfer.features") && Catch::Contains("rpm"));
+  Batch blind = campaign[2];
+  blind.inputs = {};
+  CHECK_THROWS_WITH(predict(model, blind), Catch::Contains("no known input 'rpm'"));
+  campaign[2].inputs.values(7, 0) = std::nan("");
+  CHECK_THROWS_WITH(train_transfer(campaign, plan), Catch::Contains("'rpm' in row 8"));
+  plan.inputs = {"feed"};
+  CHECK_THROWS_WITH(train_transfer(campaign, plan), Catch::Contains("'feed'") && Catch::Contains("door"));
+}
+
+TEST_CASE("without a clock inputs have no lag, and still their changes", "[fit]") {
+  Campaign campaign = with_spindle(8);
+  campaign[3].time_s.resize(0);
+  TransferPlan plan;
+  plan.inputs = {"rpm"};
+  const TrainedModel model = train_transfer(campaign, plan);
+  CHECK(feature(model, "rpm") >= 0);
+  for (const Feature& one : model.features) CHECK(one.kind != FeatureKind::input_lag);
+  CHECK(predict(model, campaign[3]).errors.allFinite());
+}

@@ -104,6 +104,6 @@ TEST_CASE("a lathe of eighteen days and a machine of five runs, each predicted b
   CHECK(lathe.S_mean < 4.66);
   CHECK(lathe.S_std < 2.53);
   const MeanAndStd<> machine = left_out(measured(folder + "/real/gooddash/run", 1, 5, "dT00", "dT21", "err"));
-  CHECK(machine.S_mean < .85);
+  CHECK(machine.S_mean < .75);
   CHECK(machine.S_std < .34);
 }

@@ -12,9 +12,10 @@ namespace thermfit {
 /// Columns that are penalised together.
 template <typename Scalar = double>
 struct PenalisedBlock {
-  Index first = 0;     ///< column
-  Index count = 0;     ///< of columns
-  Scalar penalty = 0;  ///< lambda, without unit; infinite: the block is left out
+  Index first = 0;            ///< column
+  Index count = 0;            ///< of columns
+  Scalar penalty = 0;         ///< lambda, without unit; infinite: the block is left out
+  bool units_differ = false;  ///< of its columns, which then are measured each by itself whatever the scale
 };
 
 /// What the squares of coefficients are measured in when they are penalised.
@@ -39,7 +40,8 @@ VectorX<Scalar> block_ridge(const Eigen::MatrixBase<Products>& products, const E
     const Scalar mean = squares.mean();
     const bool gone = !(mean > 0) || !std::isfinite(block.penalty);
     for (Index j = 0; j < block.count; ++j) {
-      const Scalar square = scale == PenaltyScale::block || !(squares(j) > 0) ? mean : squares(j);
+      const bool by_block = scale == PenaltyScale::block && !block.units_differ;
+      const Scalar square = by_block || !(squares(j) > 0) ? mean : squares(j);
       added(block.first + j) = gone ? std::numeric_limits<Scalar>::infinity() : block.penalty * square;
     }
   }

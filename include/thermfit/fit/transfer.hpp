@@ -23,7 +23,8 @@ struct TransferFit {
 /// `z = a + sum_j b_j R_j + sum_j c_j x_j + (clip(m) - mean m) sum_j g_j R_j`, R_j the rise of point j, x_j the same
 /// through a first-order lag, m the mean temperature at the start of the batch, clipped to the range of these batches.
 ///
-/// Block ridge (block_ridge) with a penalty for each of b, c and g; penalties and lag are those with the least error on
+/// Known inputs u and differences add their changes, the inputs' lags and the differences, where the batches hold them.
+/// Block ridge (block_ridge) with a penalty for each block; penalties and lag are those with the least error on
 /// batches left out, so that a block that does not pay vanishes. Every batch counts alike, whatever its rows, and the
 /// order of batches makes no difference. Batches must agree in points, lags and errors. Fewer than two: Error.
 /// Allocates.

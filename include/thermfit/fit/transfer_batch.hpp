@@ -2,35 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "thermfit/batch/climate.hpp"
 #include "thermfit/batch/error_reference.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
+#include "thermfit/features/known_inputs.hpp"
 #include "thermfit/features/lag.hpp"
 #include "thermfit/lazy.hpp"
 #include "thermfit/moments/moments.hpp"
 
 namespace thermfit {
 
-/// One batch as the method `transfer` sees it: mean products about zero of (rises, lagged rises, 1, errors) for every
-/// lag that may be chosen, and its climate.
-template <typename Scalar = double>
-struct TransferBatch {
-  Index rows = 0;                         ///< it has
-  Index points = 0;                       ///< temperatures
-  bool has_lag = false;                   ///< whether there are lagged rises
-  Scalar climate_degC = 0;                ///< mean temperature of its points at its start
-  std::vector<MatrixX<Scalar>> products;  ///< per lag, divided by rows; one without lagged rises where there is no lag
-
-  /// Rises, lagged rises and the constant; errors come behind them.
-  Index columns() const { return (has_lag ? 2 : 1) * points + 1; }
+/// What the method `transfer` is given beside the points: known inputs, and differences of two points.
+struct TransferExtras {
+  std::vector<std::string> inputs;                   ///< columns of Batch::inputs
+  std::vector<std::pair<Index, Index>> differences;  ///< of points: the rise of the first less that of the second
 };
 
-/// Lags that batches can tell: 10 min times powers of two, from four sampling intervals, below which a lagged rise is
-/// the rise of a few rows ago, to a third of the duration, within which it settles (both of the median batch). None
-/// where a batch has no clock. Allocates.
+/// One batch as the method `transfer` sees it: mean products about zero of (rises, lagged rises, changes of the inputs,
+/// lagged inputs, differences, 1, errors) for every lag that may be chosen, and its climate.
+template <typename Scalar = double>
+struct TransferBatch {
+  Index rows = 0;           ///< it has
+  Index points = 0;         ///< temperatures
+  bool has_lag = false;     ///< whether there are lagged rises and inputs
+  Scalar climate_degC = 0;  ///< mean temperature of its points at its start
+  std::vector<MatrixX<Scalar>>
+      products;           ///< per lag, divided by rows; one without lagged columns where there is no lag
+  Index inputs = 0;       ///< known inputs
+  Index differences = 0;  ///< of two points
+
+  /// Everything but errors, which come behind: the last is the constant.
+  Index columns() const { return first_difference() + differences + 1; }
+  /// Column of the first input's change.
+  Index first_input() const { return (has_lag ? 2 : 1) * points; }
+  /// Column of the first difference.
+  Index first_difference() const { return first_input() + (has_lag ? 2 : 1) * inputs; }
+};
+
+/// Lags that batches can tell, in steps of about the root of two (10, 14, 20, 28 min …), from four sampling intervals,
+/// below which a lagged rise is the rise of a few rows ago, to a third of the duration, within which it settles (both
+/// of the median batch). None where a batch has no clock. Allocates.
 inline std::vector<double> visible_lags_min(const Campaign& campaign) {
   std::vector<double> steps, durations;
   for (const Batch& batch : campaign) {
@@ -48,20 +63,21 @@ inline std::vector<double> visible_lags_min(const Campaign& campaign) {
   const double shortest = intervals * median(steps), longest = median(durations) / settled;
   std::vector<double> lags;
   for (int power = -20; power <= 20; ++power) {
-    const double lag = std::ldexp(10, power);
-    if (lag >= shortest && lag <= longest) lags.push_back(lag);
+    for (const double lag : {std::ldexp(10, power), std::ldexp(14, power)})
+      if (lag >= shortest && lag <= longest) lags.push_back(lag);
   }
   return lags;
 }
 
 /// A batch through the temperature columns `points`, errors as `reference` counts them (referenced()); with
 /// ErrorReference::batch all columns are taken about their means, so that the batch has an intercept of its own. Rows
-/// without a reading of every error are seen by the lags, not by the products. Values that are not finite: Error. One
-/// pass a lag; allocates.
+/// without a reading of every error are seen by the lags, not by the products. Values that are not finite, and a known
+/// input that is not there: Error. One pass a lag; allocates.
 template <typename Scalar = double>
 TransferBatch<Scalar> transfer_batch(const Batch& batch, const std::vector<Index>& points,
                                      const std::vector<double>& lags_min,
-                                     ErrorReference reference = ErrorReference::recorded) {
+                                     ErrorReference reference = ErrorReference::recorded,
+                                     const TransferExtras& extras = {}) {
   TransferBatch<Scalar> result;
   const Batch counted = referenced<Lazy<double, Scalar>>(batch, reference);
   const MatrixX<Scalar> rises = model_temperatures<Scalar>(counted, TemperatureReference::rise)(Eigen::all, points);
@@ -74,6 +90,9 @@ TransferBatch<Scalar> transfer_batch(const Batch& batch, const std::vector<Index
   result.rows = errors.rows();
   result.points = p;
   result.has_lag = !lags_min.empty();
+  result.inputs = static_cast<Index>(extras.inputs.size());
+  result.differences = static_cast<Index>(extras.differences.size());
+  const MatrixX<Scalar> inputs = known_inputs<Scalar>(batch, extras.inputs);
   result.climate_degC = static_cast<Scalar>(climate_degC(counted, points));
   const auto add = [&](const MatrixX<Scalar>& columns) {
     const Moments<Scalar> moments(MatrixX<Scalar>(columns(measured, Eigen::all)), errors);
@@ -89,11 +108,19 @@ TransferBatch<Scalar> transfer_batch(const Batch& batch, const std::vector<Index
     if (reference != ErrorReference::batch) products += mean * mean.transpose();
     result.products.push_back(std::move(products));
   };
-  if (lags_min.empty()) add(rises);
+  MatrixX<Scalar> columns(rises.rows(), result.columns() - 1);
+  columns.leftCols(p) = rises;
+  const Index k = result.inputs, first = result.first_input();
+  for (Index i = 0; i < k && rises.rows() > 0; ++i) columns.col(first + i) = inputs.col(i).array() - inputs(0, i);
+  for (Index d = 0; d < result.differences; ++d) {
+    const auto& [one, other] = extras.differences[static_cast<std::size_t>(d)];
+    columns.col(result.first_difference() + d) = rises.col(one) - rises.col(other);
+  }
+  if (lags_min.empty()) add(columns);
   for (const double lag : lags_min) {
-    MatrixX<Scalar> columns(rises.rows(), 2 * p);
-    columns << rises, lagged(rises, VectorX<Scalar>(detail::lazy<Scalar>(batch.time_s).template cast<Scalar>()),
-                             static_cast<Scalar>(60 * lag));
+    const VectorX<Scalar> time_s = detail::lazy<Scalar>(batch.time_s).template cast<Scalar>();
+    columns.middleCols(p, p) = lagged(rises, time_s, static_cast<Scalar>(60 * lag));
+    columns.middleCols(first + k, k) = lagged(inputs, time_s, static_cast<Scalar>(60 * lag));
     add(columns);
   }
   return result;

@@ -15,12 +15,14 @@ namespace thermfit {
 
 /// Settings of the method `transfer`. What is not given is chosen by leaving batches out.
 struct TransferOptions {
-  bool intercept = true;                  ///< a free constant; needless where errors start at 0, as rises do
-  std::optional<double> rise_penalty;     ///< of the rises, 0 or more
-  std::optional<double> lag_penalty;      ///< of the lagged rises; infinite: none of them
-  std::optional<double> climate_penalty;  ///< of the rises times the climate; infinite: none of them
-  std::optional<PenaltyScale> scale;      ///< what coefficients are measured in
-  double least_climate_range_K = 1;       ///< batches whose starts differ by less tell nothing of the climate
+  bool intercept = true;                     ///< a free constant; needless where errors start at 0, as rises do
+  std::optional<double> rise_penalty;        ///< of the rises, 0 or more
+  std::optional<double> lag_penalty;         ///< of the lagged rises; infinite: none of them
+  std::optional<double> climate_penalty;     ///< of the rises times the climate; infinite: none of them
+  std::optional<double> input_penalty;       ///< of changes of known inputs, and of their lags
+  std::optional<double> difference_penalty;  ///< of differences of points
+  std::optional<PenaltyScale> scale;         ///< what coefficients are measured in
+  double least_climate_range_K = 1;          ///< batches whose starts differ by less tell nothing of the climate
   std::size_t most_groups =
       12;  ///< batches are left out one by one, or, if there are more, in so many groups, 2 at least
 };
@@ -47,36 +49,46 @@ class TransferChoice {
     const ClimateRange<Scalar> range = climate_range(batches);
     centre_ = range.mean;
     has_lag_ = batches.front()->has_lag;
+    has_inputs_ = batches.front()->inputs > 0;
+    has_differences_ = batches.front()->differences > 0;
     has_climate_ = range.highest - range.lowest >= static_cast<Scalar>(options.least_climate_range_K);
     systems_.resize(batches.front()->products.size());
     leave_out_groups();
   }
 
-  /// The penalties with the least sum over batches of the mean square left in each by a model of the others. Half
-  /// decades are walked from the best of rises alone and of every lag in whole ones.
+  /// The penalties with the least geometric mean over batches of the mean square left in each by a model of the others:
+  /// the profile likelihood where every batch has a noise of its own, unknown, so that a batch which nothing predicts
+  /// does not decide alone. Half decades are walked from the best of rises alone and of every lag in whole ones.
   TransferPenalties<Scalar> choose() {
-    best_ = {none_ / 2, none_, none_, 0, 0};
+    best_ = alone(none_ / 2, 0);
     Place least = best_;
     for (std::size_t scale = 0; scale < (options_.scale ? 1 : 2); ++scale) {
-      best_ = {none_ / 2, none_, none_, 0, scale};
-      for (std::size_t rise = 0; rise < none_; rise += 2) consider({rise, none_, none_, 0, scale});
-      const std::size_t alone = best_[0];
+      best_ = alone(none_ / 2, scale);
+      for (std::size_t rise = 0; rise < none_; rise += 2) consider(alone(rise, scale));
+      const std::size_t rise = best_[0];
       Place with_lag = best_;
       for (std::size_t lag = 0; has_lag_ && lag < systems_.size(); ++lag) {
-        best_ = {alone, alone, none_, lag, scale};
-        walk({1, 0}, 2);
+        best_ = alone(rise, scale);
+        best_[1] = rise;
+        best_[lag_at] = lag;
+        walk({1, 0, 4}, 2);
         if (error(best_) < error(with_lag)) with_lag = best_;
       }
       best_ = with_lag;
-      walk({1, 0, 2}, 2);
-      walk({1, 0, 2}, 1);
+      walk({1, 0, 2, 3, 4, 5}, 2);
+      walk({1, 0, 2, 3, 4, 5}, 1);
       if (scale == 0 || error(best_) < error(least)) least = best_;
     }
     return penalties(least);
   }
 
  private:
-  using Place = std::array<std::size_t, 5>;  // in the grid for rises, lagged rises, climate; the lag; the scale
+  // In the grid for rises, lagged rises, climate, inputs, lagged inputs, differences; the lag; the scale.
+  using Place = std::array<std::size_t, 8>;
+  static constexpr std::size_t lag_at = 6, scale_at = 7;
+
+  /// Rises alone.
+  Place alone(std::size_t rise, std::size_t scale) const { return {rise, none_, none_, none_, none_, none_, 0, scale}; }
 
   struct Group {
     Batches out;
@@ -112,27 +124,39 @@ class TransferChoice {
     const auto at = [&](std::size_t block, bool there, const std::optional<double>& given) {
       return static_cast<Scalar>(there ? given.value_or(grid_[place[block]]) : grid_[none_]);
     };
-    return {at(0, true, options_.rise_penalty), at(1, has_lag_, options_.lag_penalty),
+    return {at(0, true, options_.rise_penalty),
+            at(1, has_lag_, options_.lag_penalty),
             at(2, has_climate_, options_.climate_penalty),
-            options_.scale.value_or(place[4] == 0 ? PenaltyScale::block : PenaltyScale::column), place[3]};
+            options_.scale.value_or(place[scale_at] == 0 ? PenaltyScale::block : PenaltyScale::column),
+            place[lag_at],
+            at(3, has_inputs_, options_.input_penalty),
+            at(4, has_inputs_ && has_lag_, options_.input_penalty),
+            at(5, has_differences_, options_.difference_penalty)};
   }
 
   Scalar error(const Place& place) {
     const auto known = known_.find(place);
     if (known != known_.end()) return known->second;
     const TransferPenalties<Scalar> chosen = penalties(place);
-    Scalar sum = 0;
+    constexpr Scalar resolved = Scalar(1e-6);  // of an error's mean square: a thousandth of it left is as good as none
+    Scalar sum = 0, count = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const ClimateRange<Scalar>& climate = groups_[g].climate;
-      const auto model = systems(place[3])[g].solve(error_, chosen, climate.mean, options_.intercept);
+      const auto model = systems(place[lag_at])[g].solve(error_, chosen, climate.mean, options_.intercept);
       for (const TransferBatch<Scalar>* batch : groups_[g].out) {
-        const auto left = residuals(model, *batch, place[3], climate.factor(batch->climate_degC), error_);
-        if (left.rows > 0) sum += left.sum_of_squares() / static_cast<Scalar>(left.rows);
+        const auto left = residuals(model, *batch, place[lag_at], climate.factor(batch->climate_degC), error_);
+        if (left.rows == 0) continue;
+        const Index response = batch->columns() + error_;
+        const Scalar whole = batch->products[place[lag_at]](response, response);
+        sum += std::log(left.sum_of_squares() / static_cast<Scalar>(left.rows) + resolved * whole +
+                        std::numeric_limits<Scalar>::min());
+        ++count;
       }
     }
-    if (!std::isfinite(sum)) sum = std::numeric_limits<Scalar>::max();
-    known_.emplace(place, sum);
-    return sum;
+    Scalar mean = std::exp(sum / std::max(Scalar(1), count));
+    if (!std::isfinite(mean)) mean = std::numeric_limits<Scalar>::max();
+    known_.emplace(place, mean);
+    return mean;
   }
 
   bool consider(const Place& place) {
@@ -144,6 +168,9 @@ class TransferChoice {
 
   bool fixed(std::size_t block) const {
     if (block == 0) return options_.rise_penalty.has_value();
+    if (block == 3) return !has_inputs_ || options_.input_penalty;
+    if (block == 4) return !has_inputs_ || !has_lag_ || options_.input_penalty;
+    if (block == 5) return !has_differences_ || options_.difference_penalty;
     return block == 1 ? !has_lag_ || options_.lag_penalty : !has_climate_ || options_.climate_penalty;
   }
 
@@ -173,7 +200,7 @@ class TransferChoice {
   TransferOptions options_;
   std::vector<double> grid_;
   std::size_t none_;
-  bool has_lag_ = false, has_climate_ = false;
+  bool has_lag_ = false, has_climate_ = false, has_inputs_ = false, has_differences_ = false;
   Scalar centre_ = 0;
   std::vector<Group> groups_;
   std::vector<std::vector<TransferSystem<Scalar>>> systems_;  // per lag, per group

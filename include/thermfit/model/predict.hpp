@@ -11,6 +11,7 @@
 #include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
 #include "thermfit/features/feature_columns.hpp"
+#include "thermfit/features/known_inputs.hpp"
 #include "thermfit/model/outside_domain.hpp"
 #include "thermfit/model/trained_model.hpp"
 
@@ -83,13 +84,14 @@ MatrixX<Scalar> model_inputs(const TrainedModel& model, const Batch& batch) {
   const MatrixX<Scalar> chosen = model_temperatures<Scalar>(*counted, model.reference)(Eigen::all, columns);
   if (model.features.empty()) return chosen;
   for (const Feature& feature : model.features)
-    if (feature.kind == FeatureKind::lag && !batch.has_time())
+    if ((feature.kind == FeatureKind::lag || feature.kind == FeatureKind::input_lag) && !batch.has_time())
       throw Error(batch.source.empty() ? batch.name : batch.source, "no clock, which the lags of the model need",
                   "time_s, time_min, time_h, Time, or a column of ISO 8601 date-times",
                   "name it (CsvOptions::time_column, CsvOptions::time_unit)");
   return feature_columns(model.features, chosen,
                          VectorX<Scalar>(detail::lazy<Scalar>(batch.time_s).template cast<Scalar>()),
-                         static_cast<Scalar>(model.climate.factor(climate_degC(*counted, columns))));
+                         static_cast<Scalar>(model.climate.factor(climate_degC(*counted, columns))),
+                         known_inputs<Scalar>(batch, model.known_inputs));
 }
 
 /// How much further each error would be predicted to move at most over the rows of `batch`, um, were the climate's part

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,13 @@ struct SubstituteModel {
 
 /// How the method transfer penalised the blocks of one error. Infinite: the block is not there.
 struct TransferRecord {
-  double rise_penalty = 0;     ///< of the rises
-  double lag_penalty = 0;      ///< of the lagged rises
-  double climate_penalty = 0;  ///< of the rises times the climate
-  double lag_min = 0;          ///< time constant; 0 without lag
+  double rise_penalty = 0;               ///< of the rises
+  double lag_penalty = 0;                ///< of the lagged rises
+  double climate_penalty = 0;            ///< of the rises times the climate
+  double lag_min = 0;                    ///< time constant; 0 without lag
+  double input_penalty = HUGE_VAL;       ///< of changes of known inputs
+  double input_lag_penalty = HUGE_VAL;   ///< of lagged inputs
+  double difference_penalty = HUGE_VAL;  ///< of differences of points
 };
 
 /// A linear model with everything a predictor needs and where it came from: the in-memory `thermfit-model/1`.
@@ -55,6 +59,7 @@ struct TrainedModel {
   /// intercept of its own, so that the model has none: it gives changes, 0 at rise 0.
   ErrorReference error_reference = ErrorReference::recorded;
 
+  std::vector<std::string> known_inputs;  ///< columns of Batch::inputs that features are of
   std::vector<Feature> features;       ///< what the coefficients are of; empty: of the rises (temperatures) themselves
   ClimateRange<> climate;              ///< of training, where features need it
   std::vector<TransferRecord> blocks;  ///< of the method transfer, per error; empty for the others
@@ -81,9 +86,19 @@ struct TrainedModel {
   /// What coefficient `i` multiplies, by name. Allocates the text.
   std::string input_name(Index i) const {
     const auto position = static_cast<std::size_t>(i);
-    return features.empty() ? temperatures[position] : thermfit::name(features[position], temperatures);
+    return features.empty() ? temperatures[position] : thermfit::name(features[position], temperatures, known_inputs);
   }
 };
+
+/// Refuses, in `place`, a model with features of known inputs, which that place does not hear of: throws Error with the
+/// key path.
+inline void require_no_inputs(const TrainedModel& model, const std::string& place) {
+  for (std::size_t f = 0; f < model.features.size(); ++f)
+    if (of_input(model.features[f].kind))
+      throw Error(place + ": transfer.features[" + std::to_string(f) + "]",
+                  "'" + model.input_name(static_cast<Index>(f)) + "', a known input", "features of temperatures",
+                  "predict takes it; here fit a model without inputs: --features rise,lag,climate");
+}
 
 /// Refuses, in `place`, a model whose features that place cannot compute yet: throws Error.
 inline void require_plain(const TrainedModel& model, const std::string& place) {

@@ -103,6 +103,33 @@ TEST_CASE("a model on features saved and loaded is the same to the last bit", "[
   CHECK(refusal(with_digest(other)).find("climate_lowest_degC") != std::string::npos);
 }
 
+TEST_CASE("a model on known inputs says which, and a file that names one it has not is refused", "[io]") {
+  Campaign campaign = TransferMachine{20, .1, .3, 0}.campaign(6, 90);
+  for (Batch& batch : campaign) {
+    batch.inputs = {{"rpm"}, Matrix::Zero(batch.rows(), 1)};
+    for (Index row = 0; row < batch.rows(); ++row) batch.inputs.values(row, 0) = row % 20 < 10 ? 3000 : 0;
+    batch.errors.values += .003 * batch.inputs.values;
+  }
+  TransferPlan plan;
+  plan.inputs = {"rpm"};
+  const TrainedModel model = train_transfer(campaign, plan);
+  REQUIRE(model.known_inputs == plan.inputs);
+  const Json document = model_to_json(model);
+  const TrainedModel loaded = model_from_json(document, "m.json");
+  CHECK(model_to_json(loaded) == document);
+  CHECK(loaded.known_inputs == model.known_inputs);
+  std::size_t at = 0;
+  while (document["transfer"]["features"][at]["kind"] != "input") ++at;
+  CHECK(loaded.features[at].kind == FeatureKind::input);
+  CHECK(loaded.input_name(static_cast<Index>(at)) == "rpm");
+  Json other = document;
+  other["transfer"]["features"][at]["input"] = 1;
+  CHECK(refusal(with_digest(other)).find("].input") != std::string::npos);
+  other = document;
+  other["transfer"].erase("known_inputs");
+  CHECK(refusal(with_digest(other)).find("].input") != std::string::npos);
+}
+
 TEST_CASE("an edited number is found by the digest", "[io]") {
   Json document = model_to_json(example());
   document["intercept_um"][0] = 6.259;

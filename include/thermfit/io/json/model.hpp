@@ -13,9 +13,9 @@
 
 /// The model file `thermfit-model/1`: readable JSON with 17 digits, bounded counts and a digest over all of it.
 ///
-/// A model of the method `transfer` has the key `transfer`: `features` (kind, point, and lag_min of a lag), of which
-/// `um_per_K` and the training domain have a row each, the climates of training, and `blocks`, an entry an error: its
-/// penalties, null where a block is not there, and its lag. The state of a lag starts at 0 where rises do.
+/// A model of the method `transfer` has the key `transfer`: `features` (kind, point or input, and lag_min of a lag), of
+/// which `um_per_K` and the training domain have a row each, the climates of training, and `blocks`, an entry an error:
+/// its penalties, null where a block is not there, and its lag. The state of a lag starts at 0 where rises do.
 /// `reference` tells what temperatures count from (rise, absolute), `error_reference` what errors do (recorded, start,
 /// batch: TrainedModel::error_reference); files of earlier versions lack it, and their errors are as recorded.
 
@@ -51,6 +51,12 @@ class ModelWriter {
   void optional(const char* key, std::string& value, const std::vector<std::string>&) { object_[key] = value; }
   void optional(const char* key, const Vector& values, Index) {
     if (values.size() > 0) object_[key] = to_json<J>(values);
+  }
+  void optional(const char* key, double value) {
+    if (std::isfinite(value)) object_[key] = value;
+  }
+  void optional(const char* key, const std::vector<std::string>& values, Index) {
+    if (!values.empty()) object_[key] = values;
   }
   template <class Item, class Describe>
   void list(const char* key, std::vector<Item>& items, Index, Describe describe) {
@@ -112,6 +118,13 @@ class ModelReader {
   void optional(const char* key, Vector& values, Index length) {
     if (node_.json().contains(key)) vector(key, values, length);
   }
+  /// Infinite where it is not there.
+  void optional(const char* key, double& value) {
+    if (node_.json().contains(key)) number(key, value);
+  }
+  void optional(const char* key, std::vector<std::string>& values, Index most) {
+    if (node_.json().contains(key)) texts(key, values, most);
+  }
   template <class Item, class Describe>
   void list(const char* key, std::vector<Item>& items, Index most, Describe describe) {
     const Node node = at(key);
@@ -139,14 +152,19 @@ class ModelReader {
 template <class Archive>
 void describe_features(Archive& io, TrainedModel& m, Index points, Index errors) {
   io.optional("transfer", !m.features.empty(), [&](auto& inner) {
+    inner.optional("known_inputs", m.known_inputs, most_sensors);
+    const auto known = static_cast<Index>(m.known_inputs.size());
     inner.list("features", m.features, most_features, [&](auto& item, Feature& f) {
-      std::vector<std::string> kinds{"rise", "lag", "climate", "difference"};
+      std::vector<std::string> kinds{"rise", "lag", "climate", "difference", "input", "input lag"};
       std::string kind = kinds[static_cast<std::size_t>(f.kind)];
       item.choice("kind", kind, kinds);
       f.kind = static_cast<FeatureKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-      item.integer("point", f.point, points - 1);
+      if (of_input(f.kind))
+        item.integer("input", f.point, known - 1);
+      else
+        item.integer("point", f.point, points - 1);
       if (f.kind == FeatureKind::difference) item.integer("other", f.other, points - 1);
-      if (f.kind == FeatureKind::lag) item.number("lag_min", f.lag_min);
+      if (f.kind == FeatureKind::lag || f.kind == FeatureKind::input_lag) item.number("lag_min", f.lag_min);
     });
     inner.number("climate_lowest_degC", m.climate.lowest);
     inner.number("climate_highest_degC", m.climate.highest);
@@ -156,6 +174,9 @@ void describe_features(Archive& io, TrainedModel& m, Index points, Index errors)
       item.number("lag_penalty", r.lag_penalty);
       item.number("climate_penalty", r.climate_penalty);
       item.number("lag_min", r.lag_min);
+      item.optional("input_penalty", r.input_penalty);
+      item.optional("input_lag_penalty", r.input_lag_penalty);
+      item.optional("difference_penalty", r.difference_penalty);
     });
   });
 }
@@ -286,7 +307,8 @@ TrainedModel model_from_json(const J& document, const std::string& file) {
       if (values(i) <= 0) root.fail(std::string(name) + " holds a value that is not above 0");
   };
   for (const Feature& feature : model.features)
-    if (feature.kind == FeatureKind::lag && !(feature.lag_min > 0 && std::isfinite(feature.lag_min)))
+    if ((feature.kind == FeatureKind::lag || feature.kind == FeatureKind::input_lag) &&
+        !(feature.lag_min > 0 && std::isfinite(feature.lag_min)))
       root.fail("transfer.features holds a lag that is not above 0");
   if (!(model.climate.lowest <= model.climate.highest)) root.fail("transfer.climate_lowest_degC is above the highest");
   positive(model.temperature_scale, "temperature_scale");
