@@ -134,14 +134,14 @@ Exit fit_to_transfer(const Campaign& campaign, const Arguments& arguments, Train
   plan.points = chosen_points(campaign, arguments, points_of, campaign.front().temperatures.count());
   plan.selection = points_of.selection;
   note_lacking_blocks(arguments, campaign, plan, console);
-  const TrainedModel model = train_transfer(campaign, plan);
+  const TransferData<> data = transfer_data(campaign, plan);
+  const TrainedModel model = train_transfer(campaign, plan, data);
   note_limits(model, points_of, "", console);
   deliver(
       model, arguments, output,
       [&] {
         print_model(model, console);
         if (campaign.size() < 3) return;
-        const TransferData<> data = transfer_data(campaign, plan);
         const auto errors = static_cast<Index>(model.errors.size());
         const TransferLeftOut<> left_out = transfer_left_out(data.batches, errors, data.options);
         console.line("\nEach batch predicted by a model of the others, all chosen without it:");

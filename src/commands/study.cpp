@@ -91,7 +91,8 @@ Exit run_study(const Arguments& arguments, Console& console) {
   const TransferPlan to_transfer = transfer_plan(arguments, campaign, report.error_reference);
   note_starts(campaign, report.error_reference, true, console);
   require_errors(campaign);
-  note_levels(campaign, {}, report.reference, report.error_reference, console);
+  const std::vector<Observations<>> batches = observe(campaign, report.reference, report.error_reference);
+  note_levels(campaign, moments_of(batches), {}, report.reference, report.error_reference, console);
   StudyOptions options;
   options.points = require_points(arguments, campaign, 2);
   options.most_points = arguments.integer("--most-points", 1, 10000).value_or(0);
@@ -105,7 +106,7 @@ Exit run_study(const Arguments& arguments, Console& console) {
     report.rows.push_back(batch.rows());
   }
   find_card(campaign, report);
-  report.study = study(observe(campaign, report.reference, report.error_reference), options);
+  report.study = study(batches, options);
   study_transfer(campaign, to_transfer, report);
   if (const auto path = output_path(arguments)) console.write_to(*path);
   if (arguments.has("--json"))

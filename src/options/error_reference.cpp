@@ -94,7 +94,14 @@ void note_starts(const Campaign& campaign, ErrorReference reference, bool learni
 void note_levels(const Campaign& campaign, const std::vector<Index>& points, TemperatureReference temperatures,
                  ErrorReference reference, const Console& console) {
   if (campaign.size() < 2 || reference == ErrorReference::batch) return;
-  const BatchLevels<> seen = batch_levels(moments_seen(campaign, points, temperatures, reference));
+  note_levels(campaign, moments_seen(campaign, points, temperatures, reference), points, temperatures, reference,
+              console);
+}
+
+void note_levels(const Campaign& campaign, const std::vector<Moments<>>& counted, const std::vector<Index>& points,
+                 TemperatureReference temperatures, ErrorReference reference, const Console& console) {
+  if (campaign.size() < 2 || reference == ErrorReference::batch) return;
+  const BatchLevels<> seen = batch_levels(counted);
   const bool may_start = reference == ErrorReference::recorded && temperatures == TemperatureReference::rise;
   const BatchLevels<> from_start =
       may_start ? batch_levels(moments_seen(campaign, points, temperatures, ErrorReference::start)) : seen;

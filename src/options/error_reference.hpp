@@ -30,6 +30,10 @@ void note_starts(const Campaign& campaign, ErrorReference reference, bool learni
 void note_levels(const Campaign& campaign, const std::vector<Index>& points, TemperatureReference temperatures,
                  ErrorReference reference, const Console& console);
 
+/// The same from the moments of the batches as a model reads them, `counted` so.
+void note_levels(const Campaign& campaign, const std::vector<Moments<>>& counted, const std::vector<Index>& points,
+                 TemperatureReference temperatures, ErrorReference reference, const Console& console);
+
 /// Says which errors of a model stand at a probe's zero or a machine coordinate (probe_level_um).
 void note_probe_levels(const TrainedModel& model, const Console& console);
 

@@ -186,12 +186,11 @@ VectorX<Scalar> deviation(const LinearModel<Scalar>& model, const std::vector<Mo
 /// One model of all batches by the method `transfer` (fit_transfer), complete as by train(): its coefficients are of
 /// features, rises first, then the lagged rises, those times the climate, differences, inputs and lagged inputs that
 /// pay for some error. Its training
-/// domain is that of the features. A substitute for a lost sensor is fitted with the same penalties and lag; degrees of
-/// freedom are counted without what the penalties save. Fewer than two batches, and what transfer_data() refuses:
-/// Error. Allocates.
+/// domain is that of the features. `data` is transfer_data() of the same. A substitute for a lost sensor is fitted with
+/// the same penalties and lag; degrees of freedom are counted without what the penalties save. Fewer than two batches,
+/// and what transfer_data() refuses: Error. Allocates.
 template <typename Scalar = double>
-TrainedModel train_transfer(const Campaign& campaign, const TransferPlan& plan = {}) {
-  const TransferData<Scalar> data = transfer_data<Scalar>(campaign, plan);
+TrainedModel train_transfer(const Campaign& campaign, const TransferPlan& plan, const TransferData<Scalar>& data) {
   const Batch& first = campaign.front();
   const auto points = static_cast<Index>(data.points.size());
   std::vector<TransferFit<Scalar>> fits;
@@ -302,7 +301,14 @@ TrainedModel train_transfer(const Campaign& campaign, const TransferPlan& plan =
   return trained;
 }
 
+/// The same, where transfer_data() of them is needed for nothing else.
+template <typename Scalar = double>
+TrainedModel train_transfer(const Campaign& campaign, const TransferPlan& plan = {}) {
+  return train_transfer<Scalar>(campaign, plan, transfer_data<Scalar>(campaign, plan));
+}
+
 THERMFIT_COMPILED_TEMPLATE(TransferData<double> transfer_data<double>(const Campaign&, const TransferPlan&));
-THERMFIT_COMPILED_TEMPLATE(TrainedModel train_transfer<double>(const Campaign&, const TransferPlan&));
+THERMFIT_COMPILED_TEMPLATE(TrainedModel train_transfer<double>(const Campaign&, const TransferPlan&,
+                                                               const TransferData<double>&));
 
 }  // namespace thermfit
