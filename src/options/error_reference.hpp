@@ -9,6 +9,7 @@
 #include "cli/console.hpp"
 #include "thermfit/batch/error_reference.hpp"
 #include "thermfit/model/trained_model.hpp"
+#include "thermfit/moments/moments.hpp"
 
 namespace thermfit::cli {
 
