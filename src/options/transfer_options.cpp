@@ -83,6 +83,7 @@ TransferPlan transfer_plan(const Arguments& arguments, const Campaign& campaign,
         throw UsageError("--lag is '" + text + "'; allowed: minutes above 0, at most 1e6");
       plan.lags_min->push_back(*lag);
     }
+    std::sort(plan.lags_min->begin(), plan.lags_min->end());
   }
   if (arguments.has("--scaling")) {
     const std::string scaling = arguments.choice("--scaling", {"both", "temperatures", "centre"}, "both");
