@@ -7,6 +7,7 @@
 #include "report/calibration_json.hpp"
 #include "report/calibration_text.hpp"
 #include "report/diagnosis_words.hpp"
+#include "thermfit/calibration/batch_numbers.hpp"
 #include "thermfit/calibration/shortcomings.hpp"
 #include "thermfit/calibration/start_tolerance.hpp"
 #include "thermfit/diagnosis/search/screen.hpp"
@@ -14,6 +15,7 @@
 #include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/diagnosis/sides/free_datum.hpp"
 #include "thermfit/diagnosis/sides/unlike_sides.hpp"
+#include "thermfit/diagnosis/sides/warm_side.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/json/machine.hpp"
 
@@ -35,6 +37,8 @@ const char* const details =
     "not written down as "
     "the "
     "machine file is (units, signs, clocks, exchanged columns) are told and not fitted.\n"
+    "Batches that start out of equilibrium are told, and their starts fitted one by one; so is a room that nothing "
+    "measures where the machine file says \"ambient\": {\"unmeasured\": true}.\n"
     "A gap that remains afterwards is not miscalibration: see `thermfit diagnose`.\n"
     "Exit codes: 0 done; 1 failed, or stopped before it converged; 2 could not be done.";
 
@@ -84,8 +88,15 @@ Exit run(const Arguments& arguments, Console& console) {
   WithoutBadCells clean =
       without_bad_cells(read_measured(arguments, console, files, network), DataProblem::Side::measured);
   MachineRecord seen = observations_of(network, clean.campaign);
+  for (DataProblem& one : warm_start_problem(network, seen.excitations)) {
+    network = with_fitted_start(std::move(network));
+    seen = observations_of(network, clean.campaign);
+    one.rule = starts_were_fitted;
+    console.note(place_of(one) + ": " + what_of(one) + "; " + remedy_of(one, SimulatorKind::network));
+  }
   if (!fixed) network.uncertainty.start_share = start_share_sd(network, seen);
   for (const DataProblem& one : clean.left_out) console.note(place_of(one) + ": " + what_of(one));
+  network = with_batch_numbers(std::move(network), seen);
   const std::vector<DataProblem> problems = compare_machine(network, clean.campaign, effects);
   for (const DataProblem& one : problems)
     console.note(place_of(one) + ": " + what_of(one) + "; " + remedy_of(one, SimulatorKind::network));
@@ -99,6 +110,7 @@ Exit run(const Arguments& arguments, Console& console) {
   how.starts = static_cast<int>(arguments.integer("--starts", 1, 100).value_or(how.starts));
   how.seed = static_cast<std::uint64_t>(arguments.integer("--seed", 0, 1L << 53).value_or(1));
   console.progress("calibrating …");
+  network = with_batch_numbers_that_pay(network, seen, effects);
   const Calibration calibration = calibrate(seen, network, effects, how);
   CalibrationVerdict verdict;
   verdict.shortcomings = shortcomings(calibration, seen);

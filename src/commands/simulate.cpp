@@ -6,6 +6,8 @@
 #include "commands/commands.hpp"
 #include "options/campaign_options.hpp"
 #include "options/output.hpp"
+#include "report/diagnosis_words.hpp"
+#include "thermfit/diagnosis/sides/warm_side.hpp"
 #include "thermfit/effects/catalogue.hpp"
 #include "thermfit/io/csv/writer.hpp"
 #include "thermfit/io/files/atomic_file.hpp"
@@ -75,7 +77,12 @@ Exit run(const Arguments& arguments, Console& console) {
   files.erase(files.begin());
   const Campaign campaign = read_campaign(arguments, console, files);
   const int decimals = static_cast<int>(arguments.integer("--decimals", 0, 17).value_or(4));
-  const std::vector<Simulation> simulations = simulate(network, excitations_of(network, campaign), effects);
+  const std::vector<Excitation> excitations = excitations_of(network, campaign);
+  const std::vector<Simulation> simulations = simulate(network, excitations, effects);
+  for (const DataProblem& one : warm_start_problem(network, excitations))
+    console.note(place_of(one) + ": " + what_of(one) + ", the simulation starts at the room; " + remedy_of(one));
+  if (network.ambient.rule == ThermalNetwork::Ambient::Rule::unmeasured)
+    console.note("nothing measures the room: it is held where the colder parts start; calibrate and diagnose fit it");
 
   std::set<std::string> left_out;
   for (const std::string& name : campaign.front().temperatures.names) left_out.insert(name);

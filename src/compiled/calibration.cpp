@@ -8,5 +8,7 @@
 #undef THERMFIT_COMPILED_ELSEWHERE
 #define THERMFIT_COMPILED_ELSEWHERE
 
+#include "thermfit/calibration/batch_numbers.hpp"
 #include "thermfit/calibration/calibrate.hpp"
+#include "thermfit/calibration/fitted_batches.hpp"
 #include "thermfit/calibration/held_out.hpp"

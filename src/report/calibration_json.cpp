@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/fitted_batches_json.hpp"
+
 namespace thermfit::cli {
 
 using Json = nlohmann::ordered_json;
@@ -33,6 +35,7 @@ std::string calibration_json(const Calibration& calibration, const MachineRecord
   for (std::size_t j = 0; j < calibration.fit.parameters.size(); ++j) {
     const auto [one, moved, value, standard_error] = calibrated(calibration, j);
     const Identified& known = calibration.identified[j];
+    if (one.of_batch()) continue;
     parameters.push_back(
         {{"parameter", one.name},
          {"unit", one.unit},
@@ -49,6 +52,8 @@ std::string calibration_json(const Calibration& calibration, const MachineRecord
          {"at_bound", known.at_bound},
          {"in_words", identified_in_words(calibration, j)}});
   }
+  const std::vector<FittedBatch> batches = fitted_batches(calibration.fit, seen);
+  if (!batches.empty()) document["of_batches"] = fitted_batches_json<Json>(batches, calibration.fit.prior);
   return document.dump(1) + '\n';
 }
 

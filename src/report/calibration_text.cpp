@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "cli/table.hpp"
+#include "report/fitted_batches_text.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/statistics/rms.hpp"
 
@@ -33,6 +34,8 @@ void print_parameters(const Calibration& calibration, bool all, Console& console
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return std::abs(calibrated(calibration, a).moved) > std::abs(calibrated(calibration, b).moved);
     });
+    order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t j) { return parameter(calibration, j).of_batch(); }),
+                order.end());
     const auto still = [&](std::size_t j) { return std::abs(calibrated(calibration, j).moved) < 0.5; };
     order.erase(std::find_if(order.begin(), order.end(), still), order.end());
     if (order.size() > 20) order.resize(20);
@@ -57,6 +60,7 @@ void print_unknown(const Calibration& calibration, Console& console) {
   std::vector<std::string> pairs;
   for (std::size_t j = 0; j < calibration.identified.size(); ++j) {
     const Identified& one = calibration.identified[j];
+    if (parameter(calibration, j).of_batch()) continue;
     const std::string& name = parameter(calibration, j).name;
     if (one.at_bound) bounded += (bounded.empty() ? "" : ", ") + name;
     if (!one.pinned()) {
@@ -134,7 +138,7 @@ std::string suspect_in_words(const ThermalNetwork::AddedEffect& one) {
     return "a second boundary or a constant heat" + at + " (a wall, a floor, a neighbour of another temperature)";
   if (one.effect == "heat-source") return "heat" + at + " driven by " + one.driver;
   if (one.effect == "ambient-drift") return "the course of the room, which is no column";
-  if (one.effect == "initial-gradient") return "a start off the room" + at + " (\"initial\": \"measured\")";
+  if (one.effect == "initial-gradient") return "a start other than the machine file says" + at + " (\"initial\": \"fitted\")";
   return one.effect + at + (one.driver.empty() ? "" : " driven by " + one.driver);
 }
 
@@ -160,7 +164,9 @@ void print_calibration(const Calibration& calibration, const MachineRecord& seen
   }
   console.line(std::to_string(seen.batches()) + (seen.batches() == 1 ? " batch, " : " batches, ") +
                std::to_string(seen.channels.size()) + (seen.channels.size() == 1 ? " channel, " : " channels, ") +
-               std::to_string(calibration.fit.parameters.size()) + " parameters");
+               std::to_string(std::count_if(calibration.fit.parameters.begin(), calibration.fit.parameters.end(),
+                                            [](const Parameter& one) { return !one.of_batch(); })) +
+               " parameters");
   print_channels(calibration, seen, console);
   console.line();
   console.line(all ? "Parameters (moved: in prior standard deviations)"
@@ -168,6 +174,8 @@ void print_calibration(const Calibration& calibration, const MachineRecord& seen
   print_parameters(calibration, all, console);
   console.line();
   print_unknown(calibration, console);
+  const std::string batches = fitted_batches_text(fitted_batches(calibration.fit, seen));
+  if (!batches.empty()) console.print('\n' + batches);
   const std::size_t starts = calibration.log_posteriors.size();
   if (starts > 1)
     console.line(std::to_string(calibration.agreeing) + " of " + std::to_string(starts) +

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/diagnosis_words.hpp"
+#include "report/fitted_batches_json.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -174,6 +175,8 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
                        {"from", figure(one.from)},           {"to", figure(one.to)},
                        {"prior_sds", figure(one.prior_sds)}, {"pinned", one.pinned}};
   });
+  if (!diagnosis.fitted_batches.empty())
+    document["of_batches"] = fitted_batches_json<OrderedJson>(diagnosis.fitted_batches, diagnosis.with_effects);
   document["data_problems"] = array_of(diagnosis.data_problems, [&](const DataProblem& one) {
     OrderedJson problem{{"place", place_of(one)}, {"what", what_of(one)}};
     if (one.kind >= DataProblem::Kind::unit) problem["certain"] = one.certain;

@@ -6,6 +6,7 @@
 
 #include "cli/table.hpp"
 #include "report/diagnosis_words.hpp"
+#include "report/fitted_batches_text.hpp"
 #include "thermfit/number.hpp"
 
 namespace thermfit::cli {
@@ -339,6 +340,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   sections.add("Weaker claims", claims);
   text += sections.text + '\n' + gap_table(diagnosis) + transfer_table(diagnosis.gap.transfer) +
           where_table(diagnosis.where) + calibration_table(diagnosis.calibration);
+  if (const std::string batches = fitted_batches_text(diagnosis.fitted_batches); !batches.empty())
+    text += '\n' + batches;
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thermfit/calibration/warm_start.hpp"
 #include "thermfit/diagnosis/sides/reading.hpp"
 #include "thermfit/number.hpp"
 
@@ -276,6 +277,8 @@ std::string place_of(const DataProblem& problem) {
     case Kind::not_paired:
     case Kind::resampled:
       return "pairing";
+    case Kind::warm_start:
+      return "start";
     case Kind::finding:
       return problem.batch + " " + problem.channel;
     case Kind::left_out:
@@ -314,6 +317,11 @@ std::string what_of(const DataProblem& problem) {
              problem.rule + ", no reading; left out (read off between its neighbours)";
     case Kind::datum:
       return side_of(problem) + joined(problem.names) + " counts from another zero in " + problem.note + "; left free";
+    case Kind::warm_start:
+      return joined(problem.batches) + (problem.batches.size() > 1 ? " start" : " starts") + " out of equilibrium (" +
+             problem.channel + " of " + problem.batch + " reads " + fixed_text(std::abs(problem.figure), 1) +
+             (problem.figure > 0 ? " K above" : " K below") + " the room first): the machine ran before" +
+             (problem.rule == starts_were_fitted ? "; starts are fitted batch by batch" : "");
     default:
       return difference_of(problem) + where_in(problem);
   }
@@ -431,6 +439,8 @@ std::string remedy_of(const DataProblem& problem, SimulatorKind simulator) {
     case Kind::datum:
       if (paired) return "if the probe kept its zero, something else moved it there";
       return "if the probe kept its zero, write \"datum\": \"absolute\" into `displacement` of the machine file";
+    case Kind::warm_start:
+      return std::string("write ") + says_fitted_start + " in the machine file";
     default:
       return {};
   }

@@ -98,7 +98,44 @@ VectorX<Scalar> coordinates_without(const Lazy<MachineRecord, Scalar>& seen, con
   return fit.coordinates;
 }
 
-/// Residuals of every batch from a fit that has not seen it; of a batch in no fold, nothing (NaN).
+/// The fitted machine at coordinates, the numbers of the batch `b` alone (Parameter::of_batch) fitted to that batch: no
+/// other batch can tell them. They enter linearly, so that two Gauss-Newton steps suffice. Allocates.
+template <typename Scalar = double>
+ThermalNetwork with_own_numbers(const Lazy<MachineRecord, Scalar>& seen, const Lazy<MapFit, Scalar>& fit,
+                                const EffectLibrary& library, const Lazy<VectorX<Scalar>>& coordinates, std::size_t b,
+                                const std::vector<std::vector<Whitener>>& whiteners) {
+  ThermalNetwork network = fit.network_at(coordinates);
+  std::vector<Parameter> own;
+  for (const Parameter& one : fit.parameters)
+    if (one.of_batch() && one.item == b) own.push_back(one);
+  const Index n = static_cast<Index>(own.size());
+  if (n == 0) return network;
+  VectorX<Scalar> t = VectorX<Scalar>::Zero(n), slopes(n), values(n);
+  for (Index j = 0; j < n; ++j) slopes(j) = own[static_cast<std::size_t>(j)].sd;
+  for (int step = 0; step < 2; ++step) {
+    for (Index j = 0; j < n; ++j) values(j) = own[static_cast<std::size_t>(j)].value(t(j));
+    network = with_values(std::move(network), own, values);
+    const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(network, {seen.excitations[b]}, library, own);
+    const Lazy<Simulation, Scalar>& one = simulated[0];
+    const Index samples = one.channels.rows();
+    MatrixX<Scalar> information = MatrixX<Scalar>::Identity(n, n);
+    VectorX<Scalar> score = -t;
+    for (std::size_t c = 0; c < seen.channels.size(); ++c) {
+      const Index column = seen.channels[c].column;
+      MatrixX<Scalar> jacobian = one.jacobian.middleRows(column * samples, samples) * slopes.asDiagonal();
+      VectorX<Scalar> residual = seen.channels[c].measured[b] - one.channels.col(column);
+      whiteners[c][b].apply(jacobian);
+      whiteners[c][b].apply(residual);
+      information += jacobian.transpose() * jacobian;
+      score += jacobian.transpose() * residual;
+    }
+    t += information.llt().solve(score);
+  }
+  for (Index j = 0; j < n; ++j) values(j) = own[static_cast<std::size_t>(j)].value(t(j));
+  return with_values(std::move(network), own, values);
+}
+
+/// Residuals of every batch from a fit that has not seen it, but for the batch's own numbers; of a batch in no fold, nothing (NaN).
 /// Throws Error as simulate() does. Allocates.
 template <typename Scalar = double>
 HeldOut held_out(const Lazy<MachineRecord, Scalar>& seen, const Lazy<MapFit, Scalar>& fit, const EffectLibrary& library,
@@ -112,7 +149,11 @@ HeldOut held_out(const Lazy<MachineRecord, Scalar>& seen, const Lazy<MapFit, Sca
     const VectorX<Scalar> t = coordinates_without<Scalar>(seen, fit, library, left_out, whiteners);
     std::vector<Excitation> unseen;
     for (const std::size_t b : left_out) unseen.push_back(seen.excitations[b]);
-    const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(fit.network_at(t), unseen, library);
+    ThermalNetwork network = fit.network_at(t);
+    if (!network.batches.empty())
+      for (const std::size_t b : left_out)
+        network.batches[b] = with_own_numbers<Scalar>(seen, fit, library, t, b, whiteners).batches[b];
+    const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(network, unseen, library);
     for (std::size_t i = 0; i < left_out.size(); ++i)
       for (std::size_t c = 0; c < seen.channels.size(); ++c)
         residual[c][left_out[i]] =

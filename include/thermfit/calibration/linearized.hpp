@@ -76,13 +76,19 @@ Linearized linearized(const Lazy<MachineRecord, Scalar>& seen, const Lazy<std::v
       const Lazy<Simulation, Scalar>& one = simulated[b];
       const Index n = one.channels.rows();
       Lazy<Linearized::Block, Scalar> block;
-      block.jacobian.resize(n, static_cast<Index>(channel.active.size()));
-      for (std::size_t a = 0; a < channel.active.size(); ++a) {
-        const Index j = channel.active[a];
-        block.jacobian.col(static_cast<Index>(a)) = slopes(j) * one.jacobian.col(j).segment(column * n, n);
+      block.jacobian = MatrixX<Scalar>::Zero(n, static_cast<Index>(channel.active.size()));
+      const VectorX<Scalar> own = one.jacobian.middleRows(column * n, n).cwiseAbs().colwise().maxCoeff().transpose();
+      std::vector<Index> places;
+      for (std::size_t a = 0; a < channel.active.size(); ++a)
+        if (own(channel.active[a]) > 0) places.push_back(static_cast<Index>(a));
+      MatrixX<Scalar> columns(n, static_cast<Index>(places.size()));
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const Index j = channel.active[static_cast<std::size_t>(places[i])];
+        columns.col(static_cast<Index>(i)) = slopes(j) * one.jacobian.col(j).segment(column * n, n);
       }
       block.residual = seen.channels[c].measured[b] - one.channels.col(column);
-      whiteners[c][b].apply(block.jacobian);
+      whiteners[c][b].apply(columns);
+      for (std::size_t i = 0; i < places.size(); ++i) block.jacobian.col(places[i]) = columns.col(static_cast<Index>(i));
       whiteners[c][b].apply(block.residual);
       channel.batches.push_back(std::move(block));
     }

@@ -65,7 +65,7 @@ std::vector<Shortcoming> shortcomings(const Calibration& calibration, const Mach
     const Parameter& one = calibration.fit.parameter(j);
     const Identified& known = calibration.identified[static_cast<std::size_t>(j)];
     const double sds = calibration.fit.coordinates(j);
-    if (one.kind == Parameter::Kind::start || one.kind == Parameter::Kind::effect) continue;
+    if (one.kind == Parameter::Kind::start || one.kind == Parameter::Kind::effect || one.of_batch()) continue;
     const Kind kind = known.at_bound                             ? Kind::at_bound
                       : std::abs(sds) > limits.beyond_belief_sds ? Kind::beyond_belief
                                                                  : Kind::not_pinned;

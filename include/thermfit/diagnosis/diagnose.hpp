@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/calibration/fitted_batches.hpp"
 #include "thermfit/calibration/lone_input.hpp"
 #include "thermfit/compiled.hpp"
 #include "thermfit/diagnosis/claims.hpp"
@@ -16,6 +17,7 @@
 #include "thermfit/diagnosis/sides/compare_machine.hpp"
 #include "thermfit/diagnosis/sides/free_datum.hpp"
 #include "thermfit/diagnosis/sides/unlike_sides.hpp"
+#include "thermfit/diagnosis/sides/warm_side.hpp"
 #include "thermfit/diagnosis/where/remaining.hpp"
 #include "thermfit/diagnosis/where/transfer.hpp"
 #include "thermfit/diagnosis/where/where.hpp"
@@ -63,7 +65,7 @@ std::vector<CalibrationMove> calibration_moves(const MapFit& fit) {
   std::vector<CalibrationMove> result;
   for (Index j = 0; j < covariance.rows(); ++j) {
     const Parameter& one = fit.parameter(j);
-    if (one.kind == Parameter::Kind::effect) continue;
+    if (one.kind == Parameter::Kind::effect || one.of_batch()) continue;
     const double moved = fit.coordinates(j);
     result.push_back({one.name, one.unit, one.value(0), one.value(moved), moved, covariance(j, j) < decided_variance});
   }
@@ -200,9 +202,32 @@ inline void require_courses(const Campaign& real) {
 
 }  // namespace detail
 
+namespace detail {
+
+/// Whether the starts of a campaign that begins warm are no effect's: fitted batch by batch they make the data more
+/// probable than whatever initial gradient does.
+template <typename Scalar = double>
+bool starts_are_free(const ThermalNetwork& machine, const Campaign& real, const EffectLibrary& library,
+                     const SearchOptions& options) {
+  const auto evidence = [&](const ThermalNetwork& network, const std::vector<ThermalNetwork::AddedEffect>& candidates) {
+    const SearchResult found = search(network, real, library, candidates, options);
+    double best = found.calibrated.fit.log_evidence;
+    for (const auto* accounts : {&found.single, &found.several})
+      for (const Account& one : *accounts) best = std::max(best, one.fit.log_evidence);
+    return best;
+  };
+  std::vector<ThermalNetwork::AddedEffect> gradients;
+  for (ThermalNetwork::AddedEffect& one : library.candidates(setting_of(machine, real)))
+    if (library.at(one.effect).stage() == Stage::initial) gradients.push_back(std::move(one));
+  return evidence(with_fitted_start(machine), {}) > evidence(machine, gradients);
+}
+
+}  // namespace detail
+
 /// Diagnoses why the machine `given` disagrees with the measured batches `recorded`: leaves out cells that are no
 /// readings; looks whether both are written down alike (units, signs, clocks, columns), and says so and nothing else
-/// where they are not; leaves the zero of a probe free that is set anew; calibrates it, tries every effect of `library`
+/// where they are not; leaves the zero of a probe free that is set anew; fits the starts of batches that begin out of
+/// equilibrium one by one unless the machine file says how they start; calibrates it, tries every effect of `library`
 /// at every place together with the calibration, judges on batches not used, and says where the gap lies, what remains
 /// and what to measure next. The result is complete. Throws Error on a campaign that cannot drive the machine, an
 /// unknown name in `options`, or missing times. Allocates.
@@ -218,9 +243,12 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
     for (DataProblem& one : more) problems.push_back(std::move(one));
   };
   {
-    ThermalNetwork placed = with_complete_effects(with_placements(machine), library);
+    std::vector<DataProblem> warm = warm_start_problem(machine, excitations_of(machine, real));
+    ThermalNetwork placed =
+        with_complete_effects(with_placements(warm.empty() ? machine : with_fitted_start(machine)), library);
     const MachineRecord seen = observations_of(placed, real);
     placed.uncertainty.start_share = start_share_sd(placed, seen);
+    placed = with_batch_numbers(std::move(placed), seen);
     note(compare_machine(placed, real, library, options.sides));
     if (sides_unlike(problems)) {
       note(data_problems(machine, real, clean.others));
@@ -229,6 +257,11 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
       unlike.machine = machine.name;
       return unlike;
     }
+    if (!warm.empty() && detail::starts_are_free<Scalar>(machine, real, library, options.search)) {
+      machine = with_fitted_start(std::move(machine));
+      warm[0].rule = starts_were_fitted;
+    }
+    note(std::move(warm));
   }
   note(data_problems(machine, real, clean.others));
   free_datums<Scalar>(machine, real, problems);
@@ -249,12 +282,14 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
   diagnosis.where = where_of(found, judgement, machine, real, library);
   diagnosis.remaining = detail::remaining_of<Scalar>(found, judgement, diagnosis.gap, real, options.seed);
   diagnosis.calibration = detail::calibration_moves<Scalar>(found.at(judgement.best).fit);
+  diagnosis.fitted_batches = fitted_batches<Scalar>(found.at(judgement.best).fit, found.seen);
   diagnosis.ruled_out = detail::ruled_out<Scalar>(found, judgement);
   diagnosis.data_problems = std::move(problems);
   diagnosis.weaker_claims = detail::claims_of<Scalar>(found, machine, setting);
   diagnosis.judged_by = named_numbers(options.thresholds);
   diagnosis.judged_by.emplace_back("evidence_power", evidence_power);
   diagnosis.with_effects = with_own_datums(found.at(judgement.best).fit.network());
+  diagnosis.with_effects.batches.clear();
   diagnosis.next_experiment = detail::experiment_after<Scalar>(found, judgement, diagnosis, library);
   return diagnosis;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/calibration/fitted_batches.hpp"
 #include "thermfit/network/schedule.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
@@ -264,8 +265,9 @@ struct DataProblem {
     copied,         ///< the second of `names` holds the first once more
     clock_unit,     ///< times are `figure` times too long
     clock_offset,   ///< everything measured comes `figure` seconds later than simulated
-    datum           ///< the probe of `names` counts from another zero in each of `batches`, `figure` um at most, each
+    datum,          ///< the probe of `names` counts from another zero in each of `batches`, `figure` um at most, each
                     ///< in the note; left free
+    warm_start      ///< `batches` do not start in equilibrium, `channel` of `batch` stands `figure` K off the room
   };
   /// The column of which side it is.
   enum class Side {
@@ -286,6 +288,9 @@ struct DataProblem {
   std::string unit{};                  ///< see Kind
   std::vector<std::string> batches{};  ///< in which it is so; empty: in all
 };
+
+/// What was done about a warm start, as DataProblem::rule says it.
+constexpr const char* starts_were_fitted = "fitted";
 
 /// What these data do not allow to say.
 struct WeakerClaim {
@@ -322,6 +327,7 @@ struct Diagnosis {
   std::vector<RuledOut> ruled_out;                        ///< each effect once
   Support support;                                        ///< numbers behind the verdict
   std::vector<CalibrationMove> calibration;               ///< largest move first
+  std::vector<FittedBatch> fitted_batches;  ///< starts and rooms, where the machine's rules leave them open
   std::vector<DataProblem> data_problems;                 ///< seen on the way
   std::vector<WeakerClaim> weaker_claims;                 ///< what the data do not allow to say
   std::vector<std::pair<std::string, double>> judged_by;  ///< the numbers that decided, by name

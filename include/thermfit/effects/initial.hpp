@@ -21,6 +21,7 @@ class InitialGradient : public Effect {
   std::string meaning() const override { return "the machine does not start at room temperature"; }
   std::vector<ThermalNetwork::AddedEffect> candidates(const Setting& setting) const override {
     std::vector<ThermalNetwork::AddedEffect> result;
+    if (setting.network.initial.rule == ThermalNetwork::Initial::Rule::fitted) return result;  // every start is free
     const bool taken_over = setting.network.initial.rule == ThermalNetwork::Initial::Rule::measured;
     for (const std::string& place : spread_places(setting.network)) {
       result.push_back({name(), place, "", {{"rise_K", 0}}});

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
@@ -16,6 +19,7 @@ namespace thermfit {
 /// What drives one batch, as the simulator needs it: a clock, held inputs, the ambient temperature and where it starts.
 struct Excitation {
   std::string batch;                     ///< name of the batch
+  Index number = -1;                     ///< place in ThermalNetwork::batches; -1: it has no numbers of its own
   Vector time_s;                         ///< since the first sample; strictly increasing
   std::vector<std::string> input_names;  ///< columns of `inputs`
   Matrix inputs;                         ///< samples x inputs, held until the next sample
@@ -24,6 +28,7 @@ struct Excitation {
   Vector first_reading_degC;             ///< of every sensor of the network; NaN where the batch has none
   Vector start_degC;  ///< of every node, as read: the simulation takes the mean of the sensors' offsets off
   std::vector<std::vector<Index>> start_sensors;  ///< for each node, the sensors its start was read from
+  std::vector<char> starts_at_ambient;            ///< for each node, whether it starts wherever ambient does
   /// Steps for heat that depends on temperatures, in units of its time constant; errors grow with the square. The
   /// default is exact to about 1e-5 K.
   double state_step = 0.03;
@@ -38,6 +43,9 @@ struct Excitation {
     return -1;
   }
 };
+
+/// What a machine file says where nothing measures the room.
+constexpr const char* says_unmeasured = "\"ambient\": {\"unmeasured\": true}";
 
 namespace detail {
 
@@ -63,7 +71,11 @@ VectorX<Scalar> batch_column(const Lazy<Batch, Scalar>& batch, const std::string
   for (const Channels* channels : {&batch.inputs, &batch.temperatures})
     for (const std::string& column : channels->names) known += (known.empty() ? "" : ", ") + column;
   throw Error(place, "there is no column '" + name + "', which is " + purpose, known,
-              "name the column in the machine file as it is named in the data");
+              purpose.find("ambient") == std::string::npos
+                  ? "name the column in the machine file as it is named in the data"
+                  : std::string("name the column in the machine file as it is named in the data, or, where nothing "
+                                "measures the room, write ") +
+                        says_unmeasured + ": it is fitted batch by batch");
 }
 
 inline const ThermalNetwork::Sensor* ambient_sensor(const ThermalNetwork& network, const Batch& batch) {
@@ -72,11 +84,62 @@ inline const ThermalNetwork::Sensor* ambient_sensor(const ThermalNetwork& networ
   return nullptr;
 }
 
+/// What the parts read first, in increasing order.
+template <typename Scalar = double>
+std::vector<double> first_of_parts(const ThermalNetwork& network, const Batch& batch) {
+  std::vector<double> result;
+  for (const ThermalNetwork::Sensor& sensor : network.sensors)
+    if (const Index column = batch.temperatures.find(sensor.column); sensor.node >= 0 && column >= 0)
+      if (const double degC = batch.temperatures.values(0, column); std::isfinite(degC)) result.push_back(degC);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// The room where nothing measures it, before the data are looked at: where the colder parts start (their lower
+/// quartile), since what ran is warmer than the room.
+template <typename Scalar = double>
+double room_by_parts(const ThermalNetwork& network, const Batch& batch) {
+  const std::vector<double> parts = first_of_parts<Scalar>(network, batch);
+  return parts.empty() ? network.reference_degC : parts[(parts.size() - 1) / 4];
+}
+
+/// Steady temperatures between those that are known: every node of which `known` is false gets what the links and the
+/// conductances to ambient make of its neighbours.
+template <typename Scalar = double>
+void fill_between(const ThermalNetwork& network, double ambient_degC, const std::vector<char>& known,
+                  VectorX<Scalar>& degC) {
+  const Index n = degC.size();
+  MatrixX<Scalar> weights = MatrixX<Scalar>::Identity(n, n);
+  VectorX<Scalar> right = degC;
+  const auto open = [&](Index node) { return !known[static_cast<std::size_t>(node)]; };
+  for (Index i = 0; i < n; ++i)
+    if (open(i)) {
+      weights(i, i) = network.nodes[static_cast<std::size_t>(i)].ambient_W_per_K;
+      right(i) = weights(i, i) * ambient_degC;
+    }
+  for (const ThermalNetwork::Link& link : network.links)
+    for (const auto& [a, b] : {std::pair(link.a, link.b), std::pair(link.b, link.a)})
+      if (open(a)) {
+        weights(a, a) += link.conductance_W_per_K;
+        weights(a, b) -= link.conductance_W_per_K;
+      }
+  for (Index i = 0; i < n; ++i)
+    if (weights(i, i) <= 0) weights(i, i) = 1, right(i) = ambient_degC;
+  degC = weights.partialPivLu().solve(right);
+}
+
 template <typename Scalar = double>
 VectorX<Scalar> ambient_of(const ThermalNetwork& network, const Batch& batch) {
   using Rule = ThermalNetwork::Ambient::Rule;
   const ThermalNetwork::Ambient& ambient = network.ambient;
   const Index rows = batch.rows();
+  if (ambient.rule == Rule::unmeasured) {
+    if (const ThermalNetwork::Sensor* sensor = ambient_sensor(network, batch))
+      throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
+                  "column '" + sensor->column + "' measures the room, which the machine file calls unmeasured",
+                  "one of the two", "write \"ambient\": \"" + sensor->column + "\", or map that sensor elsewhere");
+    return VectorX<Scalar>::Constant(rows, room_by_parts<Scalar>(network, batch));
+  }
   if (ambient.rule == Rule::constant) return VectorX<Scalar>::Constant(rows, ambient.value_degC);
   if (ambient.rule == Rule::column)
     return batch_column<Scalar>(batch, ambient.column, "the machine's ambient temperature", rows);
@@ -87,7 +150,8 @@ VectorX<Scalar> ambient_of(const ThermalNetwork& network, const Batch& batch) {
       throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
                   "the ambient temperature is unknown: the machine's rule is \"initial\" and no sensor is mapped to "
                   "ambient",
-                  "", "map a sensor to node \"ambient\", or give a column or a number as \"ambient\"");
+                  "", std::string("map a sensor to node \"ambient\", give a column or a number as \"ambient\", or write ") +
+                          says_unmeasured + ": it is fitted batch by batch");
     column = sensor->column;
   }
   return VectorX<Scalar>::Constant(
@@ -144,17 +208,25 @@ Excitation excitation_of(const ThermalNetwork& network, const Lazy<Batch, Scalar
   result.start_sensors.resize(network.nodes.size());
   if (network.initial.rule == ThermalNetwork::Initial::Rule::given)
     for (const auto& [node, degC] : network.initial.degC) result.start_degC(node) = degC;
-  if (network.initial.rule == ThermalNetwork::Initial::Rule::measured) {
+  result.starts_at_ambient.assign(network.nodes.size(), true);
+  for (const auto& [node, degC] : network.initial.degC) result.starts_at_ambient[static_cast<std::size_t>(node)] = false;
+  const bool fitted = network.initial.rule == ThermalNetwork::Initial::Rule::fitted;
+  if (fitted || network.initial.rule == ThermalNetwork::Initial::Rule::measured) {
     VectorX<Scalar> sum = VectorX<Scalar>::Zero(nodes);
     for (std::size_t s = 0; s < network.sensors.size(); ++s) {
       const ThermalNetwork::Sensor& sensor = network.sensors[s];
       if (sensor.node < 0 || batch.temperatures.find(sensor.column) < 0) continue;
+      if (fitted && !std::isfinite(result.first_reading_degC(static_cast<Index>(s)))) continue;
       sum(sensor.node) += detail::batch_column<Scalar>(batch, sensor.column, "the start of a node", 1)(0);
       result.start_sensors[static_cast<std::size_t>(sensor.node)].push_back(static_cast<Index>(s));
     }
     for (Index node = 0; node < nodes; ++node)
       if (const auto count = result.start_sensors[static_cast<std::size_t>(node)].size(); count > 0)
         result.start_degC(node) = sum(node) / static_cast<double>(count);
+    std::vector<char> known;
+    for (const std::vector<Index>& sensors : result.start_sensors) known.push_back(!sensors.empty());
+    for (std::size_t i = 0; i < known.size(); ++i) result.starts_at_ambient[i] = !known[i] && !fitted;
+    if (fitted) detail::fill_between<Scalar>(network, result.ambient_degC(0), known, result.start_degC);
   }
   return result;
 }
@@ -165,7 +237,10 @@ THERMFIT_COMPILED_TEMPLATE(Excitation excitation_of<double>(const ThermalNetwork
 template <typename Scalar = double>
 std::vector<Excitation> excitations_of(const ThermalNetwork& network, const Campaign& campaign) {
   std::vector<Excitation> result;
-  for (const Batch& batch : campaign) result.push_back(excitation_of<Scalar>(network, batch));
+  for (const Batch& batch : campaign) {
+    result.push_back(excitation_of<Scalar>(network, batch));
+    result.back().number = static_cast<Index>(result.size()) - 1;
+  }
   return result;
 }
 

@@ -29,12 +29,15 @@ struct Parameter {
     placement,
     response,
     start,
+    batch_start,
+    batch_ambient,
     effect
   };
   Kind kind = Kind::capacity;  ///< which number it is
-  std::size_t item = 0;        ///< node, node, link, source, displacement, sensor, sensor, sensor, –, effect
-  std::size_t part =
-      0;             ///< entry of the displacement's um_per_K or of the sensor's placement, or parameter of the effect
+  std::size_t item = 0;  ///< node, node, link, source, displacement, sensor, sensor, sensor, –, batch, batch, effect
+  /// Entry of the displacement's um_per_K or of the sensor's placement, node or shape of the batch's number, or
+  /// parameter of the effect.
+  std::size_t part = 0;
   std::string name;  ///< "capacity of head_front"
   std::string unit;  ///< of the value; empty for a pure number
   bool logarithmic = false;  ///< positive, moved by its logarithm
@@ -45,6 +48,8 @@ struct Parameter {
 
   /// A number of the machine's own physics, as its document states it; not how it is read, nor what was added.
   bool of_machine() const { return kind <= Kind::expansion; }
+  /// A number of one batch (`item`), which no other batch can tell.
+  bool of_batch() const { return kind == Kind::batch_start || kind == Kind::batch_ambient; }
 
   /// The value at a working coordinate.
   double value(double t) const { return logarithmic ? mean * std::exp(sd * t) : mean + sd * t; }
@@ -79,6 +84,10 @@ void visit_value(Network& network, const Parameter& parameter, Take take) {
       return take(network.sensors[parameter.item].response_s);
     case Kind::start:
       return take(network.initial.share);
+    case Kind::batch_start:
+      return take(network.batches[parameter.item].start_K[parameter.part]);
+    case Kind::batch_ambient:
+      return take(network.batches[parameter.item].ambient_K[parameter.part]);
     case Kind::effect:
       return take(network.effects[parameter.item].parameters[parameter.part].second);
   }
@@ -197,6 +206,20 @@ void add_readings(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& netwo
 }
 
 template <typename Scalar>
+void add_batches(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& network) {
+  using Kind = Parameter::Kind;
+  for (std::size_t b = 0; b < network.batches.size(); ++b) {
+    const ThermalNetwork::OfBatch& one = network.batches[b];
+    for (std::size_t i = 0; i < one.start_K.size(); ++i)
+      list.linear(Kind::batch_start, b, i, "start of " + network.nodes[i].name + " in " + one.name, "K", one.start_K[i],
+                  one.start_sd_K[i]);
+    for (std::size_t k = 0; k < one.ambient_K.size(); ++k)
+      list.linear(Kind::batch_ambient, b, k, std::string(k == 0 ? "" : "course of ") + "ambient in " + one.name, "K",
+                  one.ambient_K[k], one.ambient_sd_K[k]);
+  }
+}
+
+template <typename Scalar>
 void add_effects(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& network, const EffectLibrary& effects) {
   for (std::size_t e = 0; e < network.effects.size(); ++e) {
     const ThermalNetwork::AddedEffect& added = network.effects[e];
@@ -211,7 +234,7 @@ void add_effects(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& networ
 }  // namespace detail
 
 /// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
-/// sensor offsets, placements and responses, the start, then each effect's own (network.effects must be complete).
+/// sensor offsets, placements and responses, the start, numbers of single batches, then each effect's own (network.effects must be complete).
 /// Numbers that are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
 /// Throws Error on an unknown effect or place. Allocates.
 template <typename Scalar = double>
@@ -220,6 +243,7 @@ std::vector<Parameter> calibration_parameters(const Lazy<ThermalNetwork, Scalar>
   detail::ParameterList list;
   detail::add_physics<Scalar>(list, network);
   detail::add_readings<Scalar>(list, network);
+  detail::add_batches<Scalar>(list, network);
   detail::add_effects<Scalar>(list, network, effects);
   return std::move(list).take();
 }

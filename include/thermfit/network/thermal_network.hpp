@@ -68,8 +68,9 @@ struct ThermalNetwork {
     enum class Rule {
       column,          ///< measured: linear between the samples of `column`
       constant,        ///< `value_degC`
-      initial,         ///< the first reading of the sensor mapped to ambient_node, held
-      first_sample_of  ///< the first reading of `column`, held
+      initial,          ///< the first reading of the sensor mapped to ambient_node, held
+      first_sample_of,  ///< the first reading of `column`, held
+      unmeasured        ///< nothing measures it: a number of each batch, see OfBatch
     };
     Rule rule = Rule::initial;  ///< how it is found
     std::string column;         ///< for the rules that name one
@@ -81,7 +82,8 @@ struct ThermalNetwork {
     enum class Rule {
       ambient,   ///< every node starts at the first ambient temperature
       measured,  ///< nodes with a sensor start at its first reading minus offset, others at ambient
-      given      ///< nodes listed in `degC` start there, others at ambient
+      given,     ///< nodes listed in `degC` start there, others at ambient
+      fitted     ///< as measured, nodes between sensors between them; every node a number of each batch, see OfBatch
     };
     Rule rule = Rule::ambient;                   ///< how the nodes start
     std::vector<std::pair<Index, double>> degC;  ///< node, temperature, under Rule::given
@@ -116,6 +118,16 @@ struct ThermalNetwork {
     }
   };
 
+  /// Numbers of a single batch, which no other batch can tell: where the nodes start, and the room that is no column.
+  /// Calibration moves what has a prior standard deviation above 0. They are no part of the machine's document.
+  struct OfBatch {
+    std::string name;                  ///< of the batch
+    std::vector<double> start_K;       ///< by node: above Excitation::start_degC; empty: nowhere
+    std::vector<double> start_sd_K;    ///< of its prior
+    std::vector<double> ambient_K;     ///< above Excitation::ambient_degC, see room_shape(); empty: nothing
+    std::vector<double> ambient_sd_K;  ///< of its prior
+  };
+
   static constexpr Index ambient_node = -1;  ///< stands for the air as the node of a sensor
 
   std::string name;                         ///< of the machine
@@ -130,6 +142,7 @@ struct ThermalNetwork {
   Initial initial;                          ///< where a batch begins
   Uncertainty uncertainty;                  ///< what is known of its numbers
   std::vector<AddedEffect> effects;         ///< in the order in which they act
+  std::vector<OfBatch> batches;             ///< by Excitation::number; empty: no batch has numbers of its own
 
   /// How many nodes there are.
   Index node_count() const { return static_cast<Index>(nodes.size()); }

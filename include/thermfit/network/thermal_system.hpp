@@ -85,6 +85,13 @@ class ThermalSystem {
     Column column = -1;                 ///< of the share
     std::vector<Index> node_of_sensor;  ///< whatever an effect makes the sensor show later
   };
+  /// A ThermalNetwork::OfBatch.
+  struct OfBatch {
+    std::vector<double> start_K;          ///< by node of the network
+    std::vector<Column> start_columns;    ///< of them
+    std::vector<double> ambient_K;        ///< by shape
+    std::vector<Column> ambient_columns;  ///< of them
+  };
   /// A ThermalNetwork::Displacement.
   struct Displacement {
     bool zero_at_first_sample = true;                ///< measured from its first sample
@@ -219,7 +226,8 @@ class ThermalSystem {
   std::vector<Displacement> displacements;         ///< in the network's order
   std::vector<BoundLaw::Owner> owners;             ///< one for each effect
   Index columns = 0;                               ///< parameters whose sensitivities are wanted
-  std::vector<Column> state_columns;               ///< those of them that can move a temperature
+  std::vector<Column> state_columns;               ///< those of them that can move a temperature in every batch
+  std::vector<OfBatch> batches;                    ///< numbers of single batches, by Excitation::number
 
   /// The law at a moment, with the values of its effect. Does not allocate.
   double value(const BoundLaw& bound, const Moment& now) const {

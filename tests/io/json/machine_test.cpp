@@ -64,8 +64,9 @@ TEST_CASE("a machine saved is the machine read, and nothing is left beside it", 
 
 TEST_CASE("all rules for ambient, start and displacement survive the round trip", "[network][json]") {
   Json changed = document();
-  for (const Json& ambient : {Json("T9"), Json(21.5), Json("initial"), Json{{"first_sample_of", "T9"}}})
-    for (const Json& initial : {Json("ambient"), Json("measured"), Json(0.25)}) {
+  for (const Json& ambient : {Json("T9"), Json(21.5), Json("initial"), Json{{"first_sample_of", "T9"}},
+                              Json{{"unmeasured", true}}})
+    for (const Json& initial : {Json("ambient"), Json("measured"), Json("fitted"), Json(0.25)}) {
       changed["ambient"] = ambient;
       changed["initial"] = initial;
       const Json again = machine_to_json(machine_from_json(changed, "m.json", library));
@@ -159,6 +160,11 @@ TEST_CASE("every mistake in a machine file is told with its key path", "[network
   check("initial: there is no node 'bedd'", [](Json& d) { d["initial"] = Json{{"bedd", 20}}; });
   check("initial: 'cold'", [](Json& d) { d["initial"] = "cold"; });
   check("ambient: neither a text", [](Json& d) { d["ambient"] = true; });
+  check("ambient.unmeasured: false", [](Json& d) { d["ambient"] = Json{{"unmeasured", false}}; });
+  check("ambient: two rules for one room", [](Json& d) {
+    d["ambient"] = Json{{"unmeasured", true}, {"first_sample_of", "T9"}};
+  });
+  check("ambient: unknown key 'unmesured'", [](Json& d) { d["ambient"] = Json{{"unmesured", true}}; });
   check("uncertainty: unknown key 'capacities'", [](Json& d) { d["uncertainty"]["capacities"] = 1; });
   check("uncertainty.power: a negative", [](Json& d) { d["uncertainty"]["power"] = -1; });
   check("effect: 'coolent' is not known", [](Json& d) { d["effects"][0]["effect"] = "coolent"; });

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/calibration/batch_numbers.hpp"
 #include "thermfit/calibration/machine_record.hpp"
 #include "thermfit/calibration/misfit.hpp"
 #include "thermfit/calibration/start_tolerance.hpp"
@@ -68,6 +69,7 @@ class CatalogueSearch {
     found_.machine = with_complete_effects(with_placements(network), library);
     found_.seen = observations_of(found_.machine, campaign);
     found_.machine.uncertainty.start_share = start_share_sd(found_.machine, found_.seen);
+    found_.machine = with_batch_numbers_that_pay<Scalar>(found_.machine, found_.seen, library);
     found_.folds = folds_of(found_.machine, found_.seen);
     thorough_.tolerance = 0.3;
     thorough_.most_iterations = 40;

@@ -68,6 +68,9 @@ J machine_to_json(const ThermalNetwork& network) {
     case Rule::first_sample_of:
       document["ambient"] = J{{"first_sample_of", network.ambient.column}};
       break;
+    case Rule::unmeasured:
+      document["ambient"] = J{{"unmeasured", true}};
+      break;
   }
   document["nodes"] = J::array();
   for (const auto& node : network.nodes)
@@ -112,8 +115,9 @@ J machine_to_json(const ThermalNetwork& network) {
   using Start = ThermalNetwork::Initial::Rule;
   document["initial"] = network.initial.share != 0               ? J(network.initial.share)
                         : network.initial.rule == Start::ambient ? J("ambient")
-                        : network.initial.rule == Start::measured
-                            ? J("measured")
+                        : network.initial.rule == Start::measured ? J("measured")
+                        : network.initial.rule == Start::fitted
+                            ? J("fitted")
                             : detail::by_node_json<J>(network, network.initial.degC);
   const ThermalNetwork::Uncertainty& sd = network.uncertainty;
   document["uncertainty"] = {{"capacity", sd.capacity},

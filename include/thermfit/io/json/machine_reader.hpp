@@ -55,11 +55,17 @@ class MachineReader {
       ambient = {node.text() == "initial" ? Rule::initial : Rule::column, node.text(), 0};
       if (ambient.rule == Rule::initial) ambient.column.clear();
     } else if (node.json().is_object()) {
-      node.require_keys({"first_sample_of"});
-      ambient = {Rule::first_sample_of, node.at("first_sample_of").text(), 0};
+      node.require_keys({"first_sample_of", "unmeasured"});
+      if (const auto unmeasured = node.find("unmeasured")) {
+        if (unmeasured->json() != J(true)) unmeasured->fail(unmeasured->json().dump(), "true");
+        if (node.find("first_sample_of")) node.fail("two rules for one room", "one of first_sample_of and unmeasured");
+        ambient = {Rule::unmeasured, "", 0};
+      } else {
+        ambient = {Rule::first_sample_of, node.at("first_sample_of").text(), 0};
+      }
     } else {
       node.fail("neither a text, a number nor an object",
-                "a column name, a number in degC, \"initial\" or {\"first_sample_of\": column}");
+                "a column name, a number in degC, \"initial\", {\"first_sample_of\": column} or {\"unmeasured\": true}");
     }
   }
 
@@ -184,9 +190,10 @@ class MachineReader {
 
   void read_initial(const Node& node) {
     using Rule = ThermalNetwork::Initial::Rule;
-    if (node.json().is_string())
-      network_.initial.rule = node.choice({"ambient", "measured"}) == "ambient" ? Rule::ambient : Rule::measured;
-    else if (node.json().is_number())
+    if (node.json().is_string()) {
+      const std::string rule = node.choice({"ambient", "measured", "fitted"});
+      network_.initial.rule = rule == "ambient" ? Rule::ambient : rule == "measured" ? Rule::measured : Rule::fitted;
+    } else if (node.json().is_number())
       network_.initial = {Rule::ambient, {}, node.number(0, 1)};
     else
       network_.initial = {Rule::given, by_node(node), 0};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "thermfit/error.hpp"
 #include "thermfit/lazy.hpp"
 #include "thermfit/network/excitation.hpp"
+#include "thermfit/network/room_shape.hpp"
 #include "thermfit/network/thermal_system.hpp"
 
 namespace thermfit::detail {
@@ -34,6 +36,9 @@ class Drive {
       inputs_.col(static_cast<Index>(i)) = excitation.inputs.col(from);
     }
     ambient_ = excitation.ambient_degC;
+    const std::size_t number = static_cast<std::size_t>(std::max<Index>(0, excitation.number));
+    if (excitation.number >= 0 && number < system.batches.size()) of_batch_ = &system.batches[number];
+    if (of_batch_ != nullptr && !of_batch_->ambient_K.empty()) move_room();
     if (!system.ambient_laws.empty()) apply_ambient_laws();
     history_ = {excitation.time_s, ambient_};
     const VectorX<Scalar>& measured = excitation.measured_ambient_degC;
@@ -45,6 +50,11 @@ class Drive {
 
   Index samples() const { return ambient_.size(); }
   const Lazy<Excitation, Scalar>& excitation() const { return excitation_; }
+
+  /// Numbers of this batch alone; null where it has none.
+  const ThermalSystem::OfBatch* of_batch() const { return of_batch_; }
+  /// K by which the batch's own numbers move the room at the first sample.
+  double first_move_K() const { return first_move_K_; }
 
   double time_s(Index sample) const { return excitation_.time_s(sample); }
 
@@ -106,8 +116,23 @@ class Drive {
     return (values(sample + 1) - values(sample)) / (time_s_(sample + 1) - time_s_(sample));
   }
 
+  /// The room by the numbers of this batch.
+  void move_room() {
+    const std::vector<Column>& columns = of_batch_->ambient_columns;
+    if (std::any_of(columns.begin(), columns.end(), [](Column one) { return one >= 0; }))
+      ambient_tangents_ = MatrixX<Scalar>::Zero(samples(), system_.columns);
+    const double end_s = time_s_(samples() - 1);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (Index k = 0; k < samples(); ++k) {
+        const double shape = room_shape(i, end_s > 0 ? time_s_(k) / end_s : 0);
+        ambient_(k) += of_batch_->ambient_K[i] * shape;
+        if (k == 0) first_move_K_ += of_batch_->ambient_K[i] * shape;
+        if (columns[i] >= 0) ambient_tangents_(k, columns[i]) = shape;
+      }
+  }
+
   void apply_ambient_laws() {
-    ambient_tangents_ = MatrixX<Scalar>::Zero(samples(), system_.columns);
+    if (ambient_tangents_.size() == 0) ambient_tangents_ = MatrixX<Scalar>::Zero(samples(), system_.columns);
     for (const BoundLaw& law : system_.ambient_laws) {
       const VectorX<Scalar> before = ambient_;
       for (Index k = 0; k < samples(); ++k) {
@@ -131,6 +156,8 @@ class Drive {
   RowMatrixX<Scalar> inputs_;
   VectorX<Scalar> ambient_;
   MatrixX<Scalar> ambient_tangents_;  ///< samples x parameters
+  const ThermalSystem::OfBatch* of_batch_ = nullptr;
+  double first_move_K_ = 0;
   RoomHistory history_, measured_history_;
 };
 

@@ -25,9 +25,9 @@ class Integrator {
       : system_(system),
         regimes_(regimes),
         drive_(drive),
-        tangents_wanted_(!system.state_columns.empty()),
         nodes_(regimes.capacities().size()),
-        place_(system),
+        place_(system, drive),
+        tangents_wanted_(place_.count() > 0),
         flows_(system, drive, place_) {
     StartState<Scalar> start = start_state<Scalar>(system, drive, place_, nodes_);
     temperatures_ = std::move(start.degC);
@@ -211,9 +211,9 @@ class Integrator {
   const Lazy<ThermalSystem, Scalar>& system_;
   Regimes<Scalar>& regimes_;
   const Drive<Scalar>& drive_;
-  const bool tangents_wanted_;
   const Index nodes_;
   const StateColumns<Scalar> place_;
+  const bool tangents_wanted_;
   StateFlows<Scalar> flows_;
   Regime<Scalar>* regime_ = nullptr;
   VectorX<Scalar> temperatures_, state_, held_force_;

@@ -13,7 +13,7 @@ template <typename Scalar>
 class Readings {
  public:
   Readings(const Lazy<ThermalSystem, Scalar>& system, const Drive<Scalar>& drive)
-      : system_(system), drive_(drive), sensors_(static_cast<Index>(system.sensors.size())), samples_(drive.samples()) {
+      : system_(system), drive_(drive), state_columns_(system, drive), sensors_(static_cast<Index>(system.sensors.size())), samples_(drive.samples()) {
     const Index channels = sensors_ + static_cast<Index>(system.displacements.size());
     values_.resize(samples_, channels);
     tangents_.setZero(samples_ * channels, system.columns);
@@ -36,7 +36,7 @@ class Readings {
 
   void take_temperatures(Index sample, const Regime<Scalar>& regime, const Integrator<Scalar>& now) {
     const double time_s = drive_.time_s(sample);
-    if (!system_.state_columns.empty())
+    if (!state_columns_.columns().empty())
       block_.noalias() = regime.outputs.leftCols(sensors_).transpose() * now.modal_tangents();
     for (Index s = 0; s < sensors_; ++s) {
       const ThermalSystem::Sensor& sensor = system_.sensors[static_cast<std::size_t>(s)];
@@ -65,7 +65,7 @@ class Readings {
   void take_displacements(Index sample, const GridPoint& point, const Regime<Scalar>& regime, Integrator<Scalar>& now) {
     const VectorX<Scalar>& degC = now.temperatures();
     const Index outputs = static_cast<Index>(system_.displacements.size());
-    if (!system_.state_columns.empty())
+    if (!state_columns_.columns().empty())
       block_.noalias() = regime.outputs.rightCols(outputs).transpose() * now.modal_tangents();
     for (Index d = 0; d < outputs; ++d) {
       const ThermalSystem::Displacement& output = system_.displacements[static_cast<std::size_t>(d)];
@@ -122,8 +122,8 @@ class Readings {
   /// Adds a row of tangents of the state to a row of all parameters.
   template <class Block, class Row>
   void scatter(const Block& block, Index from, Row& row) const {
-    for (std::size_t j = 0; j < system_.state_columns.size(); ++j)
-      row(system_.state_columns[j]) += block(from, static_cast<Index>(j));
+    const std::vector<Column>& columns = state_columns_.columns();
+    for (std::size_t j = 0; j < columns.size(); ++j) row(columns[j]) += block(from, static_cast<Index>(j));
   }
 
   template <class Row>
@@ -197,6 +197,7 @@ class Readings {
 
   const Lazy<ThermalSystem, Scalar>& system_;
   const Drive<Scalar>& drive_;
+  const StateColumns<Scalar> state_columns_;
   const Index sensors_, samples_;
   MatrixX<Scalar> values_;       ///< samples x channels
   RowMatrixX<Scalar> tangents_;  ///< (channel * samples + sample) x parameters

@@ -35,9 +35,31 @@ void start_by_readings(const Lazy<ThermalSystem, Scalar>& system, const Drive<Sc
   for (Index s = 0; s < sensors; ++s) {
     const Index node = read_by[static_cast<std::size_t>(s)];
     if (node < 0) continue;
-    const double rise = (first_degC(s) - excitation.ambient_degC(0)) / sensors_at(node);
+    const double rise = (first_degC(s) - excitation.ambient_degC(0) - drive.first_move_K()) / sensors_at(node);
     start.degC(node) += share * rise;
+    if (const auto* own = drive.of_batch())
+      for (std::size_t k = 0; k < own->ambient_columns.size(); ++k)
+        if (const Column column = own->ambient_columns[k]; column >= 0)
+          start.tangents(node, place(column)) -= share * room_shape(k, 0) / sensors_at(node);
     if (own_column >= 0) start.tangents(node, place(own_column)) += rise;
+  }
+}
+
+/// Moves the start by the numbers of the batch: nodes that start at ambient go with it.
+template <typename Scalar>
+void start_by_batch(const ThermalSystem::OfBatch& own, const Drive<Scalar>& drive, const StateColumns<Scalar>& place,
+                    StartState<Scalar>& start) {
+  const std::vector<char>& at_ambient = drive.excitation().starts_at_ambient;
+  for (std::size_t i = 0; i < at_ambient.size(); ++i) {
+    if (!at_ambient[i]) continue;
+    start.degC(static_cast<Index>(i)) += drive.first_move_K();
+    for (std::size_t k = 0; k < own.ambient_columns.size(); ++k)
+      if (const Column column = own.ambient_columns[k]; column >= 0)
+        start.tangents(static_cast<Index>(i), place(column)) += room_shape(k, 0);
+  }
+  for (std::size_t i = 0; i < own.start_K.size(); ++i) {
+    start.degC(static_cast<Index>(i)) += own.start_K[i];
+    if (own.start_columns[i] >= 0) start.tangents(static_cast<Index>(i), place(own.start_columns[i])) += 1;
   }
 }
 
@@ -59,6 +81,7 @@ StartState<Scalar> start_state(const Lazy<ThermalSystem, Scalar>& system, const 
   }
   if (system.start_by_readings.share != 0 || system.start_by_readings.column >= 0)
     start_by_readings<Scalar>(system, drive, place, start);
+  if (drive.of_batch() != nullptr) start_by_batch<Scalar>(*drive.of_batch(), drive, place, start);
   const Moment now = drive.moment(0, drive.time_s(0), nullptr);
   for (const auto& [node, law] : system.starts) {
     start.degC(node) += system.value(law, now);

@@ -8,17 +8,25 @@
 
 namespace thermfit::detail {
 
-/// The parameters that can move a temperature: tangents of the state have a column for these only.
+/// The parameters that can move a temperature of one batch: tangents of the state have a column for these only, so that
+/// numbers of other batches cost nothing.
 template <typename Scalar>
 class StateColumns {
  public:
-  explicit StateColumns(const Lazy<ThermalSystem, Scalar>& system)
+  StateColumns(const Lazy<ThermalSystem, Scalar>& system, const Drive<Scalar>& drive)
       : columns_(system.state_columns), place_(static_cast<std::size_t>(system.columns), -1) {
+    if (drive.of_batch() != nullptr)
+      for (const auto* more : {&drive.of_batch()->start_columns, &drive.of_batch()->ambient_columns})
+        for (const Column column : *more)
+          if (column >= 0) columns_.push_back(column);
     for (std::size_t j = 0; j < columns_.size(); ++j)
       place_[static_cast<std::size_t>(columns_[j])] = static_cast<Column>(j);
   }
 
   Index count() const { return static_cast<Index>(columns_.size()); }
+
+  /// The parameters, in the order of the tangents.
+  const std::vector<Column>& columns() const { return columns_; }
 
   /// Place of a parameter in the tangents of the state, or -1.
   Column operator()(Column column) const { return place_[static_cast<std::size_t>(column)]; }
@@ -32,7 +40,7 @@ class StateColumns {
   }
 
  private:
-  const std::vector<Column>& columns_;
+  std::vector<Column> columns_;
   std::vector<Column> place_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "thermfit/lazy.hpp"
@@ -122,16 +123,25 @@ ThermalSystem system_of(const ThermalNetwork& network, const EffectLibrary& effe
   system.own_nodes = network.node_count();
   system.reference_degC = network.reference_degC;
   system.columns = static_cast<Index>(parameters.size());
-  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured;
+  const bool offsets_move_start = network.initial.rule == ThermalNetwork::Initial::Rule::measured ||
+                                  network.initial.rule == ThermalNetwork::Initial::Rule::fitted;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Kind kind = parameters[j].kind;
-    if (kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&
+    if (!parameters[j].of_batch() && kind != Kind::expansion && kind != Kind::placement && kind != Kind::response &&
         (kind != Kind::sensor_offset || offsets_move_start))
       system.state_columns.push_back(static_cast<Column>(j));
   }
   const detail::ParameterColumns column(parameters);
   detail::add_elements<Scalar>(system, network, column);
   detail::add_channels<Scalar>(system, network, column);
+  for (const ThermalNetwork::OfBatch& one : network.batches)
+    system.batches.push_back({one.start_K, std::vector<Column>(one.start_K.size(), -1), one.ambient_K,
+                              std::vector<Column>(one.ambient_K.size(), -1)});
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const auto [kind, batch, part] = std::tie(parameters[j].kind, parameters[j].item, parameters[j].part);
+    if (kind == Kind::batch_start) system.batches[batch].start_columns[part] = static_cast<Column>(j);
+    if (kind == Kind::batch_ambient) system.batches[batch].ambient_columns[part] = static_cast<Column>(j);
+  }
   for (std::size_t e = 0; e < network.effects.size(); ++e)
     detail::add_effect(system, network, e, effects.at(network.effects[e].effect), parameters);
   return system;
