@@ -57,13 +57,16 @@ std::vector<Option> options() {
 }
 
 /// What a machine may lack where its own numbers do not suffice: the candidates of the catalogue that promise most, by
-/// one linear step, each effect once.
-std::vector<ThermalNetwork::AddedEffect> suspects(const Calibration& calibration, const MachineRecord& seen,
+/// one linear step together with calibration, each effect once. The step begins at the machine as given: a failed
+/// calibration has bent its numbers to hide what is missing.
+std::vector<ThermalNetwork::AddedEffect> suspects(const ThermalNetwork& machine, const MachineRecord& seen,
                                                   const Campaign& campaign, const EffectLibrary& effects) {
   constexpr double worth_nats = 5;  // a suspicion, no name
-  const ScreeningBase<> base(seen, calibration.fit, effects, calibration.fit.prior.effects.size());
-  const std::vector<ThermalNetwork::AddedEffect> candidates =
-      effects.candidates(setting_of(calibration.fit.prior, campaign));
+  MapFitOptions as_given;
+  as_given.most_iterations = 0;
+  const MapFit fit = map_fit(seen, machine, effects, as_given);
+  const ScreeningBase<> base(seen, fit, effects, fit.prior.effects.size());
+  const std::vector<ThermalNetwork::AddedEffect> candidates = effects.candidates(setting_of(fit.prior, campaign));
   std::vector<ThermalNetwork::AddedEffect> result;
   for (const Candidate& one : screen(base, effects, candidates, 0)) {
     const bool known =
@@ -114,7 +117,7 @@ Exit run(const Arguments& arguments, Console& console) {
   const Calibration calibration = calibrate(seen, network, effects, how);
   CalibrationVerdict verdict;
   verdict.shortcomings = shortcomings(calibration, seen);
-  if (!verdict.shortcomings.empty()) verdict.suspects = suspects(calibration, seen, clean.campaign, effects);
+  if (!verdict.shortcomings.empty()) verdict.suspects = suspects(network, seen, clean.campaign, effects);
   console.progress("");
   if (output && verdict.spoilt() && !arguments.has("--keep-failed"))
     console.note(*output + ": not written: the calibrated machine is not to be believed");

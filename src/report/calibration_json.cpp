@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/fitted_batches_json.hpp"
+#include "thermfit/calibration/fitted_batches.hpp"
 
 namespace thermfit::cli {
 

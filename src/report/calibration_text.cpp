@@ -6,6 +6,7 @@
 
 #include "cli/table.hpp"
 #include "report/fitted_batches_text.hpp"
+#include "thermfit/calibration/fitted_batches.hpp"
 #include "thermfit/number.hpp"
 #include "thermfit/statistics/rms.hpp"
 
@@ -34,8 +35,9 @@ void print_parameters(const Calibration& calibration, bool all, Console& console
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return std::abs(calibrated(calibration, a).moved) > std::abs(calibrated(calibration, b).moved);
     });
-    order.erase(std::remove_if(order.begin(), order.end(), [&](std::size_t j) { return parameter(calibration, j).of_batch(); }),
-                order.end());
+    order.erase(
+        std::remove_if(order.begin(), order.end(), [&](std::size_t j) { return parameter(calibration, j).of_batch(); }),
+        order.end());
     const auto still = [&](std::size_t j) { return std::abs(calibrated(calibration, j).moved) < 0.5; };
     order.erase(std::find_if(order.begin(), order.end(), still), order.end());
     if (order.size() > 20) order.resize(20);
@@ -138,7 +140,8 @@ std::string suspect_in_words(const ThermalNetwork::AddedEffect& one) {
     return "a second boundary or a constant heat" + at + " (a wall, a floor, a neighbour of another temperature)";
   if (one.effect == "heat-source") return "heat" + at + " driven by " + one.driver;
   if (one.effect == "ambient-drift") return "the course of the room, which is no column";
-  if (one.effect == "initial-gradient") return "a start other than the machine file says" + at + " (\"initial\": \"fitted\")";
+  if (one.effect == "initial-gradient")
+    return "a start other than the machine file says" + at + " (\"initial\": \"fitted\")";
   return one.effect + at + (one.driver.empty() ? "" : " driven by " + one.driver);
 }
 

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "thermfit/calibration/fitted_batches.hpp"
+#include "thermfit/calibration/fitted_batch.hpp"
+#include "thermfit/network/thermal_network.hpp"
 
 namespace thermfit::cli {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "thermfit/calibration/fitted_batches.hpp"
+#include "thermfit/calibration/fitted_batch.hpp"
 
 namespace thermfit::cli {
 

@@ -41,8 +41,8 @@ Fitted fitted(const ThermalNetwork& machine, const Campaign& campaign) {
   result.seen = observations_of(machine, campaign);
   CalibrationOptions once;
   once.starts = 1;
-  result.calibration = calibrate(
-      result.seen, with_batch_numbers_that_pay(machine, result.seen, standard_effects()), standard_effects(), once);
+  result.calibration = calibrate(result.seen, with_batch_numbers_that_pay(machine, result.seen, standard_effects()),
+                                 standard_effects(), once);
   return result;
 }
 

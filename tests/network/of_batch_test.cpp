@@ -15,17 +15,14 @@ ThermalNetwork with_numbers(ThermalNetwork::Initial::Rule rule) {
   return machine;
 }
 
-std::vector<Excitation> of_bench() {
-  return excitations_of(bench::machine(), bench::campaign(bench::machine(), 2, 3));
-}
+std::vector<Excitation> of_bench() { return excitations_of(bench::machine(), bench::campaign(bench::machine(), 2, 3)); }
 
 }  // namespace
 
 TEST_CASE("sensitivities to numbers of a batch are those of differences, and none of another batch") {
   const auto rule = GENERATE(ThermalNetwork::Initial::Rule::ambient, ThermalNetwork::Initial::Rule::fitted);
   const ThermalNetwork machine = with_numbers(rule);
-  const std::vector<Excitation> batches =
-      excitations_of(machine, bench::campaign(bench::machine(), 2, 3));
+  const std::vector<Excitation> batches = excitations_of(machine, bench::campaign(bench::machine(), 2, 3));
   std::vector<Parameter> own;
   for (const Parameter& one : calibration_parameters(machine, standard_effects()))
     if (one.of_batch()) own.push_back(one);
@@ -60,8 +57,8 @@ TEST_CASE("without numbers of its own a batch is simulated as if there were none
   ThermalNetwork machine = with_numbers(ThermalNetwork::Initial::Rule::ambient);
   std::vector<Excitation> batches = of_bench();
   for (Excitation& one : batches) one.number = -1;
-  const auto with = simulate(machine, batches, standard_effects()), without =
-      simulate(bench::machine(), batches, standard_effects());
+  const auto with = simulate(machine, batches, standard_effects()),
+             without = simulate(bench::machine(), batches, standard_effects());
   CHECK(with[1].channels == without[1].channels);
 }
 

@@ -18,12 +18,12 @@ namespace thermfit {
 
 /// What is known of the numbers of a batch before its data: standard deviations of their priors.
 struct BatchNumberPriors {
-  double least_start_K = 0.02;     ///< of a node that a thermometer reads: noise and steps of its first reading
-  double between = 0.5;            ///< of a node without: this share of the spread of all starts
-  double least_room_K = 1;         ///< of the level of the room
-  double room_course_K = 3;        ///< of its drift, half of what it moves; the k-th shape has a k-th of it
-  std::size_t most_shapes = 8;     ///< of the room's course
-  int most_iterations = 15;        ///< of the fits that choose how many
+  double least_start_K = 0.02;  ///< of a node that a thermometer reads: noise and steps of its first reading
+  double between = 0.5;         ///< of a node without: this share of the spread of all starts
+  double least_room_K = 1;      ///< of the level of the room
+  double room_course_K = 3;     ///< of its drift, half of what it moves; the k-th shape has a k-th of it
+  std::size_t most_shapes = 8;  ///< of the room's course
+  int most_iterations = 15;     ///< of the fits that choose how many
 };
 
 namespace detail {
@@ -66,9 +66,9 @@ void give_room(ThermalNetwork::OfBatch& own, const Lazy<Excitation, Scalar>& one
 }  // namespace detail
 
 /// The machine with the numbers of each batch that its rules leave open, at the means of their priors: the start of
-/// every node under Initial::Rule::fitted (what thermometers read first, a share of the step to its neighbours uncertain
-/// as their placement is; between them freely), and under Ambient::Rule::unmeasured the first `room_shapes` of
-/// room_shape(). Unchanged under other rules. Allocates.
+/// every node under Initial::Rule::fitted (what thermometers read first, a share of the step to its neighbours
+/// uncertain as their placement is; between them freely), and under Ambient::Rule::unmeasured the first `room_shapes`
+/// of room_shape(). Unchanged under other rules. Allocates.
 template <typename Scalar = double>
 ThermalNetwork with_batch_numbers(Lazy<ThermalNetwork, Scalar> network, const MachineRecord& seen,
                                   std::size_t room_shapes = 1, const BatchNumberPriors& priors = {}) {
@@ -85,9 +85,9 @@ ThermalNetwork with_batch_numbers(Lazy<ThermalNetwork, Scalar> network, const Ma
   return network;
 }
 
-/// with_batch_numbers(), of a room that nothing measures as many shapes as pay by the evidence: its level, with a drift,
-/// or with four or eight shapes of its course, whichever makes the data most probable. Too few would leave the level
-/// off by more than its uncertainty says. Throws Error as simulate() does.
+/// with_batch_numbers(), of a room that nothing measures as many shapes as pay by the evidence: its level, with a
+/// drift, or with four or eight shapes of its course, whichever makes the data most probable. Too few would leave the
+/// level off by more than its uncertainty says. Throws Error as simulate() does.
 template <typename Scalar = double>
 ThermalNetwork with_batch_numbers_that_pay(const ThermalNetwork& network, const MachineRecord& seen,
                                            const EffectLibrary& library, const BatchNumberPriors& priors = {}) {
@@ -109,9 +109,7 @@ ThermalNetwork with_batch_numbers_that_pay(const ThermalNetwork& network, const 
 
 THERMFIT_COMPILED_TEMPLATE(ThermalNetwork with_batch_numbers<double>(ThermalNetwork, const MachineRecord&, std::size_t,
                                                                      const BatchNumberPriors&));
-THERMFIT_COMPILED_TEMPLATE(ThermalNetwork with_batch_numbers_that_pay<double>(const ThermalNetwork&,
-                                                                              const MachineRecord&,
-                                                                              const EffectLibrary&,
-                                                                              const BatchNumberPriors&));
+THERMFIT_COMPILED_TEMPLATE(ThermalNetwork with_batch_numbers_that_pay<double>(
+    const ThermalNetwork&, const MachineRecord&, const EffectLibrary&, const BatchNumberPriors&));
 
 }  // namespace thermfit

@@ -1,33 +1,18 @@
 #pragma once
 
-/// What a fit says of single batches: where their parts started, and the room that nothing measured.
+/// What a fit says of single batches.
 
 #include <cmath>
 #include <cstddef>
-#include <string>
 #include <vector>
 
+#include "thermfit/calibration/fitted_batch.hpp"
 #include "thermfit/calibration/fitted_machine.hpp"
 #include "thermfit/calibration/machine_record.hpp"
 #include "thermfit/compiled.hpp"
 #include "thermfit/network/room_shape.hpp"
 
 namespace thermfit {
-
-/// A number with its standard error.
-struct FittedNumber {
-  double value = 0;           ///< in the unit that its owner names
-  double standard_error = 0;  ///< posterior
-};
-
-/// Numbers of one batch that no other batch can tell.
-struct FittedBatch {
-  std::string batch;                     ///< name
-  std::vector<FittedNumber> start_degC;  ///< by node; empty where starts were not fitted
-  bool room = false;                     ///< whether the room was
-  FittedNumber room_degC;                ///< its mean over the batch
-  FittedNumber room_drift_K;             ///< from the first to the last sample; 0 where a drift did not pay
-};
 
 /// The numbers of every batch; nothing where the machine's rules leave none open. Allocates.
 template <typename Scalar = double>

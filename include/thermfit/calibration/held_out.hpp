@@ -115,7 +115,8 @@ ThermalNetwork with_own_numbers(const Lazy<MachineRecord, Scalar>& seen, const L
   for (int step = 0; step < 2; ++step) {
     for (Index j = 0; j < n; ++j) values(j) = own[static_cast<std::size_t>(j)].value(t(j));
     network = with_values(std::move(network), own, values);
-    const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(network, {seen.excitations[b]}, library, own);
+    const Lazy<std::vector<Simulation>, Scalar> simulated =
+        simulate<Scalar>(network, {seen.excitations[b]}, library, own);
     const Lazy<Simulation, Scalar>& one = simulated[0];
     const Index samples = one.channels.rows();
     MatrixX<Scalar> information = MatrixX<Scalar>::Identity(n, n);
@@ -135,8 +136,8 @@ ThermalNetwork with_own_numbers(const Lazy<MachineRecord, Scalar>& seen, const L
   return with_values(std::move(network), own, values);
 }
 
-/// Residuals of every batch from a fit that has not seen it, but for the batch's own numbers; of a batch in no fold, nothing (NaN).
-/// Throws Error as simulate() does. Allocates.
+/// Residuals of every batch from a fit that has not seen it, but for the batch's own numbers; of a batch in no fold,
+/// nothing (NaN). Throws Error as simulate() does. Allocates.
 template <typename Scalar = double>
 HeldOut held_out(const Lazy<MachineRecord, Scalar>& seen, const Lazy<MapFit, Scalar>& fit, const EffectLibrary& library,
                  const Folds& folds) {

@@ -88,7 +88,8 @@ Linearized linearized(const Lazy<MachineRecord, Scalar>& seen, const Lazy<std::v
       }
       block.residual = seen.channels[c].measured[b] - one.channels.col(column);
       whiteners[c][b].apply(columns);
-      for (std::size_t i = 0; i < places.size(); ++i) block.jacobian.col(places[i]) = columns.col(static_cast<Index>(i));
+      for (std::size_t i = 0; i < places.size(); ++i)
+        block.jacobian.col(places[i]) = columns.col(static_cast<Index>(i));
       whiteners[c][b].apply(block.residual);
       channel.batches.push_back(std::move(block));
     }

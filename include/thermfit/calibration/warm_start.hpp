@@ -37,7 +37,8 @@ inline WarmStart warm_start(const ThermalNetwork& network, const std::vector<Exc
     std::size_t read = 0, off = 0, most = 0;
     double low = 0, high = 0, largest = 0;
     for (std::size_t s = 0; s < network.sensors.size(); ++s) {
-      const double degC = one.first_reading_degC.size() > 0 ? one.first_reading_degC(static_cast<Index>(s)) : std::nan("");
+      const double degC =
+          one.first_reading_degC.size() > 0 ? one.first_reading_degC(static_cast<Index>(s)) : std::nan("");
       if (network.sensors[s].node < 0 || !std::isfinite(degC)) continue;
       const double rise = degC - network.sensors[s].offset_K - one.ambient_degC(0);
       low = read == 0 ? rise : std::min(low, rise);

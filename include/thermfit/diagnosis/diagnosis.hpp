@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "thermfit/calibration/fitted_batches.hpp"
+#include "thermfit/calibration/fitted_batch.hpp"
 #include "thermfit/network/schedule.hpp"
 #include "thermfit/network/thermal_network.hpp"
 
@@ -319,17 +319,17 @@ struct Diagnosis {
   std::vector<std::string> batches;                  ///< names of those compared
   Verdict verdict = Verdict::unknown;                ///< `effects` is empty unless it is `effect` or `ambiguous`
   bool unlike_sides = false;  ///< the sides are not written down alike (data_problems): nothing else was looked for
-  std::vector<FoundEffect> effects;                       ///< strongest first
-  Gap gap;                                                ///< how large, level by level
-  Where where;                                            ///< on the machine and in time
-  Remaining remaining;                                    ///< after the best explanation, channel by channel
-  NextExperiment next_experiment;                         ///< to decide what is left open
-  std::vector<RuledOut> ruled_out;                        ///< each effect once
-  Support support;                                        ///< numbers behind the verdict
-  std::vector<CalibrationMove> calibration;               ///< largest move first
-  std::vector<FittedBatch> fitted_batches;  ///< starts and rooms, where the machine's rules leave them open
-  std::vector<DataProblem> data_problems;                 ///< seen on the way
-  std::vector<WeakerClaim> weaker_claims;                 ///< what the data do not allow to say
+  std::vector<FoundEffect> effects;          ///< strongest first
+  Gap gap;                                   ///< how large, level by level
+  Where where;                               ///< on the machine and in time
+  Remaining remaining;                       ///< after the best explanation, channel by channel
+  NextExperiment next_experiment;            ///< to decide what is left open
+  std::vector<RuledOut> ruled_out;           ///< each effect once
+  Support support;                           ///< numbers behind the verdict
+  std::vector<CalibrationMove> calibration;  ///< largest move first
+  std::vector<FittedBatch> fitted_batches;   ///< starts and rooms, where the machine's rules leave them open
+  std::vector<DataProblem> data_problems;    ///< seen on the way
+  std::vector<WeakerClaim> weaker_claims;    ///< what the data do not allow to say
   std::vector<std::pair<std::string, double>> judged_by;  ///< the numbers that decided, by name
   /// The machine calibrated, with the effects found; without nodes where the simulator was not a network.
   ThermalNetwork with_effects;

@@ -150,8 +150,9 @@ VectorX<Scalar> ambient_of(const ThermalNetwork& network, const Batch& batch) {
       throw Error(batch.source.empty() ? "batch " + batch.name : batch.source,
                   "the ambient temperature is unknown: the machine's rule is \"initial\" and no sensor is mapped to "
                   "ambient",
-                  "", std::string("map a sensor to node \"ambient\", give a column or a number as \"ambient\", or write ") +
-                          says_unmeasured + ": it is fitted batch by batch");
+                  "",
+                  std::string("map a sensor to node \"ambient\", give a column or a number as \"ambient\", or write ") +
+                      says_unmeasured + ": it is fitted batch by batch");
     column = sensor->column;
   }
   return VectorX<Scalar>::Constant(
@@ -209,7 +210,8 @@ Excitation excitation_of(const ThermalNetwork& network, const Lazy<Batch, Scalar
   if (network.initial.rule == ThermalNetwork::Initial::Rule::given)
     for (const auto& [node, degC] : network.initial.degC) result.start_degC(node) = degC;
   result.starts_at_ambient.assign(network.nodes.size(), true);
-  for (const auto& [node, degC] : network.initial.degC) result.starts_at_ambient[static_cast<std::size_t>(node)] = false;
+  for (const auto& [node, degC] : network.initial.degC)
+    result.starts_at_ambient[static_cast<std::size_t>(node)] = false;
   const bool fitted = network.initial.rule == ThermalNetwork::Initial::Rule::fitted;
   if (fitted || network.initial.rule == ThermalNetwork::Initial::Rule::measured) {
     VectorX<Scalar> sum = VectorX<Scalar>::Zero(nodes);

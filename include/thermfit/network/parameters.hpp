@@ -38,8 +38,8 @@ struct Parameter {
   /// Entry of the displacement's um_per_K or of the sensor's placement, node or shape of the batch's number, or
   /// parameter of the effect.
   std::size_t part = 0;
-  std::string name;  ///< "capacity of head_front"
-  std::string unit;  ///< of the value; empty for a pure number
+  std::string name;          ///< "capacity of head_front"
+  std::string unit;          ///< of the value; empty for a pure number
   bool logarithmic = false;  ///< positive, moved by its logarithm
   double mean = 0;           ///< of the prior
   double sd = 1;             ///< of the prior: of the value, or of its logarithm where `logarithmic`
@@ -234,9 +234,9 @@ void add_effects(ParameterList& list, const Lazy<ThermalNetwork, Scalar>& networ
 }  // namespace detail
 
 /// Everything that can be calibrated, in this order: capacities, ambient conductances, links, powers, expansions,
-/// sensor offsets, placements and responses, the start, numbers of single batches, then each effect's own (network.effects must be complete).
-/// Numbers that are zero and cannot be negative stay zero and are left out, and so are offsets of ambient sensors.
-/// Throws Error on an unknown effect or place. Allocates.
+/// sensor offsets, placements and responses, the start, numbers of single batches, then each effect's own
+/// (network.effects must be complete). Numbers that are zero and cannot be negative stay zero and are left out, and so
+/// are offsets of ambient sensors. Throws Error on an unknown effect or place. Allocates.
 template <typename Scalar = double>
 std::vector<Parameter> calibration_parameters(const Lazy<ThermalNetwork, Scalar>& network,
                                               const EffectLibrary& effects) {

@@ -66,8 +66,8 @@ struct ThermalNetwork {
   struct Ambient {
     /// How it is found in a batch.
     enum class Rule {
-      column,          ///< measured: linear between the samples of `column`
-      constant,        ///< `value_degC`
+      column,           ///< measured: linear between the samples of `column`
+      constant,         ///< `value_degC`
       initial,          ///< the first reading of the sensor mapped to ambient_node, held
       first_sample_of,  ///< the first reading of `column`, held
       unmeasured        ///< nothing measures it: a number of each batch, see OfBatch

@@ -64,8 +64,8 @@ TEST_CASE("a machine saved is the machine read, and nothing is left beside it", 
 
 TEST_CASE("all rules for ambient, start and displacement survive the round trip", "[network][json]") {
   Json changed = document();
-  for (const Json& ambient : {Json("T9"), Json(21.5), Json("initial"), Json{{"first_sample_of", "T9"}},
-                              Json{{"unmeasured", true}}})
+  for (const Json& ambient :
+       {Json("T9"), Json(21.5), Json("initial"), Json{{"first_sample_of", "T9"}}, Json{{"unmeasured", true}}})
     for (const Json& initial : {Json("ambient"), Json("measured"), Json("fitted"), Json(0.25)}) {
       changed["ambient"] = ambient;
       changed["initial"] = initial;

@@ -113,8 +113,8 @@ J machine_to_json(const ThermalNetwork& network) {
     if (channel.correction) entry["sign"] = "correction";
   }
   using Start = ThermalNetwork::Initial::Rule;
-  document["initial"] = network.initial.share != 0               ? J(network.initial.share)
-                        : network.initial.rule == Start::ambient ? J("ambient")
+  document["initial"] = network.initial.share != 0                ? J(network.initial.share)
+                        : network.initial.rule == Start::ambient  ? J("ambient")
                         : network.initial.rule == Start::measured ? J("measured")
                         : network.initial.rule == Start::fitted
                             ? J("fitted")

@@ -64,8 +64,9 @@ class MachineReader {
         ambient = {Rule::first_sample_of, node.at("first_sample_of").text(), 0};
       }
     } else {
-      node.fail("neither a text, a number nor an object",
-                "a column name, a number in degC, \"initial\", {\"first_sample_of\": column} or {\"unmeasured\": true}");
+      node.fail(
+          "neither a text, a number nor an object",
+          "a column name, a number in degC, \"initial\", {\"first_sample_of\": column} or {\"unmeasured\": true}");
     }
   }
 

@@ -13,7 +13,11 @@ template <typename Scalar>
 class Readings {
  public:
   Readings(const Lazy<ThermalSystem, Scalar>& system, const Drive<Scalar>& drive)
-      : system_(system), drive_(drive), state_columns_(system, drive), sensors_(static_cast<Index>(system.sensors.size())), samples_(drive.samples()) {
+      : system_(system),
+        drive_(drive),
+        state_columns_(system, drive),
+        sensors_(static_cast<Index>(system.sensors.size())),
+        samples_(drive.samples()) {
     const Index channels = sensors_ + static_cast<Index>(system.displacements.size());
     values_.resize(samples_, channels);
     tangents_.setZero(samples_ * channels, system.columns);
