@@ -23,7 +23,9 @@ const char* const details =
     "  card      how to enter the compensation at a control: --control NAME\n"
     "\n"
     "c, cpp, st and linuxcnc hold the whole compensator: sensor checks, hold, substitute for a lost sensor, training "
-    "domain, clamp, slew limit, status word.\n"
+    "domain, clamp, slew limit, status word. Of a model of the method transfer also its lags, the climate of the "
+    "session, and both over a power cycle, if it is told how long that was; onnx and card have no memory and take none. "
+    "--probe adds what a probe measures now and then.\n"
     "Exit codes: 0 done; 2 could not be done.";
 
 struct Target {
@@ -52,7 +54,6 @@ Exit run_export(const Arguments& arguments, Console& console) {
   if (target != "card" && !request.control.empty()) throw UsageError("--control belongs to --target card");
   request.source = arguments.positionals()[0];
   request.trained = load_model(request.source);
-  require_plain(request.trained, request.source);
   request.source = request.source.substr(request.source.rfind('/') + 1);
   request.name = arguments.value_or("--name", "thermal");
   if (identifiers({request.name})[0] != request.name || upper_case(request.name) == request.name)
@@ -63,6 +64,7 @@ Exit run_export(const Arguments& arguments, Console& console) {
     throw UsageError("--name is '" + request.name + "', a word of " + languages + "; try " +
                      identifiers({"thermal_" + request.name})[0]);
   request.wishes = compensation_wishes(arguments);
+  request.wishes.probe = arguments.has("--probe");
   if (request.control == "fanuc" && !arguments.has("--sign")) request.wishes.sign = OutputSign::error;
   request.single_precision = arguments.choice("--scalar", {"float", "double"}, "double") == "float";
   request.unit = offset_unit(arguments.choice("--unit", {"um", "mm", "0.1um"}, default_unit(target, request.control)));
@@ -79,6 +81,7 @@ std::vector<Option> options() {
                           {"--output", "FILE", "write there instead of stdout", 'o', false},
                           {"--name", "NAME", "prefix of all that is exported; default thermal", 0, false},
                           {"--scalar", "TYPE", "float or double (default)", 0, false},
+                          {"--probe", "", "with a function, pins or inputs for a probe's measured errors", 0, false},
                           {"--unit", "UNIT",
                            "of the offset: um, mm, 0.1um; default um, mm for linuxcnc, the control's "
                            "own for a card",

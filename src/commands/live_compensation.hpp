@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/kept_zero.hpp"
 #include "thermfit/controller/compensator.hpp"
 #include "thermfit/controller/settings_for.hpp"
 #include "thermfit/io/csv/line_reader.hpp"
@@ -13,14 +14,15 @@ namespace thermfit::cli {
 /// A compensator fed with lines of CSV: what `thermfit run` is apart from reading and writing.
 class LiveCompensation {
  public:
-  /// `state_file` keeps the zero over a power cycle; empty: nothing is kept.
-  LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow,
-                   std::string state_file = "");
+  /// `state_file` keeps the zero over a power cycle, of a model with features where its lags are too; empty: nothing is
+  /// kept. `off_s`: how long it was off; NaN: by the clock of the input, where that goes on.
+  LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow, std::string state_file,
+                   double off_s);
   LiveCompensation(const LiveCompensation&) = delete;
 
-  /// Finds the model's columns, and in shadow mode measured errors. Throws Error on a missing or repeated name, a unit
-  /// that is no temperature, text that is no UTF-8, or a quote that is never closed. Then starts, with the zero of the
-  /// state file where there is one.
+  /// Finds the model's columns, those of a probe (`probe_` and an error), and in shadow mode measured errors. Throws
+  /// Error on a missing or repeated name, a unit that is no temperature, text that is no UTF-8, or a quote that is
+  /// never closed. Reads the zero of the state file where there is one; the first line after starts with it.
   void read_header(const std::string& line, std::size_t line_number);
 
   /// Takes the cells of the next line; cells that are no number are missing. False when the line has not as many cells
@@ -38,9 +40,14 @@ class LiveCompensation {
   std::vector<std::string> remarks();
   /// At the end: in shadow mode, what was measured and what would have been left.
   std::vector<std::string> summary() const;
+  /// At the end: stores where the lags are.
+  void finish();
 
  private:
+  void start(double time_s);
   void keep_zero();
+  void store();
+  void take_probe();
   void count_periods(double time_s);
 
   using Device = Compensator<double, dynamic_size, dynamic_size, dynamic_size>;
@@ -49,21 +56,28 @@ class LiveCompensation {
     double value_um = 0, sum_squares = 0, remaining_squares = 0;
     std::size_t rows = 0;
   };
+  struct Probe {
+    std::optional<std::size_t> column;
+    double value_um = 0;
+    std::size_t taken = 0, refused = 0;
+  };
 
   std::vector<std::string> temperatures_, errors_;
   std::string state_file_;
   Device::Model model_;
   Device::Settings settings_;
   Device device_;
-  bool shadow_, zero_was_pending_ = false, told_of_period_ = false;
-  double period_s_, time_s_;  ///< of a step; of the line before, NaN: not known
-  std::uint32_t periods_ = 1;
+  bool shadow_, started_ = false, zero_was_pending_ = false, told_of_period_ = false;
+  double period_s_, off_s_, time_s_;  ///< of a step; of the line before, NaN: not known
+  std::uint32_t periods_ = 1, since_stored_ = 0;
+  KeptZero kept_;
   std::vector<std::string> remarks_;
   std::optional<std::size_t> time_column_;
   std::optional<CsvLineReader> table_;
   std::vector<std::size_t> columns_;  ///< of the model's temperatures
   std::vector<double> readings_;
   std::vector<Measured> measured_;
+  std::vector<Probe> probes_;
 };
 
 }  // namespace thermfit::cli

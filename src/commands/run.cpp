@@ -25,6 +25,18 @@ const char* const details =
     "a "
     "probe's zero or a machine coordinate in a model is no error, and refused where it would be applied.\n"
     "\n"
+    "A model of the method transfer runs with its lags and climate: a session begins with the first good lines (all "
+    "sensors), or after a pause of 4 hours. --state keeps where the lags are, every minute and at the end; after a "
+    "power "
+    "cycle they go on if the time off is known, from a time column that goes on or from --off. Where it is not known "
+    "there is no zero until a datum.\n"
+    "\n"
+    "A column `probe_` and the name of an error (probe_Z) is a probe's: a number there is the thermal error measured "
+    "at "
+    "that line, um, the whole of it since the zero (what is left of it, less the offset applied; plus it with --sign "
+    "error). What it differs by from the demand is added from the next line on, until the next reading or --probe-age; "
+    "--probe-limit and a reading far off the last one refuse it, told on stderr. A datum and a restart drop it.\n"
+    "\n"
     "Answer: line number, offset of each error in um, state, status word, first sensor not used, why, where the zero "
     "is from. A line that "
     "cannot be read, or a cell that is no number, counts as readings that are missing: the offset is held, the answer "
@@ -39,9 +51,8 @@ Exit run_run(const Arguments& arguments, Console& console) {
   if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
   if (const auto state = arguments.value("--state")) require_not_read(arguments, *state);
   const TrainedModel trained = load_model(arguments.positionals()[0]);
-  require_plain(trained, arguments.positionals()[0]);
   LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"),
-                        arguments.value_or("--state", ""));
+                        arguments.value_or("--state", ""), arguments.number("--off", 0, 1e9).value_or(std::nan("")));
   note_probe_levels(trained, console);
   const double watchdog_s = arguments.number("--watchdog", .001, 86400).value_or(0);
 
@@ -66,11 +77,12 @@ Exit run_run(const Arguments& arguments, Console& console) {
       console.note("standard input:" + std::to_string(source.line_number()) +
                    ": not as many cells as the first line names; counts as missing readings");
     if (!readable) live.lose_readings(got == LineSource::Got::nothing ? watchdog_s : 0);
-    for (const std::string& remark : live.remarks()) console.note(remark);
     console.line(live.answer(source.line_number()));
+    for (const std::string& remark : live.remarks()) console.note(remark);
     if (!console.flush())  // nobody compensates: whoever watches this process must see it
       throw Error("standard output", "the reader of the answers is gone", "", "start it and this again");
   }
+  live.finish();
   if (bad_lines > 10) console.note(std::to_string(bad_lines) + " lines could not be read");
   for (const std::string& remark : live.summary()) console.note(remark);
   return Exit::done;
@@ -79,6 +91,7 @@ Exit run_run(const Arguments& arguments, Console& console) {
 std::vector<Option> options() {
   std::vector<Option> all{
       {"--state", "FILE", "keeps the zero over a power cycle; written when a zero is taken", 0, false},
+      {"--off", "S", "how long it was off, for the lags of a kept state; default: by the time column", 0, false},
       {"--shadow", "", "tell what would be applied, apply nothing", 0, false},
       {"--watchdog", "S", "answer with missing readings when no line came for so long", 0, false}};
   for (Option& option : compensation_options()) all.push_back(std::move(option));

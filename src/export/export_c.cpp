@@ -21,6 +21,13 @@ const char* const usage = R"(   @n@_initialise once; then @n@_resume with the ze
    - New readings, or NaN. Where they come over a bus that can go silent, a heartbeat that changes with each new set
      of them, to @n@_step_after.
    - The number of periods that have passed, to @n@_step_after, where cycles can be lost.
+@?features@
+   - Where there are lags: how long the power was off, in periods, to @n@_resume_after, with what @n@_retain gave a minute
+     before it went at most; @n@_step also while it is off. Not known, there is no zero until a datum.
+@.@
+@?probe@
+   - What a probe measures now and then, to @n@_probe.
+@.@
 
 )";
 
@@ -72,7 +79,12 @@ static inline uint32_t @n@_self_test(void) {
         retained.digest ^= 1U;
       }
       @n@_initialise(&self);
+@?plain@
       @n@_resume(&self, &retained, NULL);
+@.@
+@?features@
+      @n@_resume_after(&self, &retained, @OFF@, NULL);
+@.@
     } else {
       /* goes on */
     }
@@ -125,13 +137,62 @@ struct CText {
   }
 };
 
+template <class Model>
+bool has_features(const Model& model) {
+  return !model.features.channels.empty();
+}
+
+/// How many numbers the coefficients multiply, by the name of the constant.
+template <class Model>
+std::string inputs_name(const Model& model, const std::string& N) {
+  return N + (has_features(model) ? "_FEATURES" : "_SENSORS");
+}
+
+/// Derived channels and lags; C has no arrays of length 0, and one lag that nothing is made of adds nothing.
+template <class Scalar>
+std::string feature_constants(const typename HostCompensator<Scalar>::Model& model,
+                              const typename HostCompensator<Scalar>::Settings& settings, const std::string& n) {
+  const CText<Scalar> c{n};
+  const std::string N = upper_case(n);
+  std::vector<std::uint32_t> kind, sensor, other, lag;
+  std::vector<std::uint32_t> lag_sensor(model.features.lag_sensor.begin(), model.features.lag_sensor.end());
+  for (const ControllerFeature& channel : model.features.channels) {
+    kind.push_back(static_cast<std::uint32_t>(channel.kind));
+    sensor.push_back(channel.sensor);
+    other.push_back(channel.other);
+    lag.push_back(channel.lag);
+  }
+  std::vector<Scalar> share = settings.features.lag_share;
+  if (share.empty()) share = {1}, lag_sensor = {0};
+  const auto define = [&](const std::string& name, const std::string& value, const std::string& comment) {
+    return "#define " + N + "_" + name + " " + value + " /* " + comment + " */\n";
+  };
+  std::string text =
+      define("FEATURES", c.literal(static_cast<std::uint32_t>(kind.size())), "derived channels, each a coefficient") +
+      define("LAGS", c.literal(static_cast<std::uint32_t>(share.size())), "first-order lags of temperatures") +
+      define("FEATURE_RISE", "0U", "of a sensor since the zero, K") +
+      define("FEATURE_LAG", "1U", "the same through a lag, K") +
+      define("FEATURE_CLIMATE", "2U", "the same times how far the session began from the mean climate, K^2") +
+      define("FEATURE_DIFFERENCE", "3U", "rise of a sensor less that of another, K") +
+      define("CLIMATE_LOWEST_DEGC", c.literal(model.features.climate_lowest_degC), "of training") +
+      define("CLIMATE_HIGHEST_DEGC", c.literal(model.features.climate_highest_degC), "of training") +
+      define("CLIMATE_MEAN_DEGC", c.literal(model.features.climate_mean_degC), "of training") +
+      define("SESSION_STEPS", c.literal(settings.features.session_steps), "a pause after which a session begins");
+  const std::string per_feature = "[" + N + "_FEATURES]", per_lag = "[" + N + "_LAGS]";
+  return text + c.array("uint32_t", "feature_kind", per_feature, kind) +
+         c.array("uint32_t", "feature_sensor", per_feature, sensor) +
+         c.array("uint32_t", "feature_other", per_feature, other, "of a difference, the one taken off") +
+         c.array("uint32_t", "feature_lag", per_feature, lag) + c.array("uint32_t", "lag_sensor", per_lag, lag_sensor) +
+         c.array(n + "_real", "lag_share", per_lag, share, "of the way, in a period: 1 - exp(-period / lag)");
+}
+
 template <class Scalar>
 std::string constants(const typename HostCompensator<Scalar>::Model& model,
                       const typename HostCompensator<Scalar>::Settings& settings, const ExportRequest& request) {
   const CText<Scalar> c{request.name};
   const std::string n = request.name, N = upper_case(n), real = n + "_real";
   const std::string per_sensor = "[" + N + "_SENSORS]", per_error = "[" + N + "_ERRORS]",
-                    per_component = "[" + N + "_COMPONENTS]";
+                    per_component = "[" + N + "_COMPONENTS]", per_input = "[" + inputs_name(model, N) + "]";
   const auto define = [&](const std::string& name, const std::string& value, const std::string& comment = "") {
     return "#define " + N + "_" + name + " " + value + (comment.empty() ? "" : " /* " + comment + " */") + "\n";
   };
@@ -140,6 +201,7 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   text += define("ERRORS", c.literal(static_cast<std::uint32_t>(model.errors())));
   text += define("COMPONENTS", c.literal(static_cast<std::uint32_t>(model.domain.rotations.size())),
                  "of the training domain");
+  if (has_features(model)) text += feature_constants<Scalar>(model, settings, n);
   text += define("RISE", c.literal(model.rise), "temperatures count from a zero");
   text += define("MODEL", c.literal(model.identity), "a zero that was kept belongs to one");
   text += define("UNIT_PER_UM", c.literal(static_cast<Scalar>(request.unit.per_um)), request.unit.name + " per um");
@@ -157,7 +219,7 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   text += define("T2_LIMIT", c.literal(model.domain.t2_limit)) + define("SPE_LIMIT", c.literal(model.domain.spe_limit));
 
   text += "\n/* The model: error[j] = intercept[j] + sum over i of coefficients[j][i] * temperature[i]. */\n";
-  text += c.array(real, "coefficients", per_error + per_sensor, model.equation.coefficients, "um/K");
+  text += c.array(real, "coefficients", per_error + per_input, model.equation.coefficients, "um/K");
   text += c.array(real, "intercept_um", per_error, model.equation.intercept_um);
   text += "/* The same without sensor i. */\n";
   text += c.array("bool", "has_substitute", per_sensor, model.has_substitute);
@@ -167,15 +229,15 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
     coefficients.push_back(substitute.coefficients);
     intercepts.push_back(substitute.intercept_um);
   }
-  text += c.array(real, "substitute_coefficients", per_sensor + per_error + per_sensor, coefficients);
+  text += c.array(real, "substitute_coefficients", per_sensor + per_error + per_input, coefficients);
   text += c.array(real, "substitute_intercept_um", per_sensor + per_error, intercepts);
   text +=
       c.array(real, "agreement_um", per_sensor + per_error, model.agreement_um, "for sensor i to agree; 0: not known");
   text += "/* The training domain. */\n";
-  text += c.array(real, "mean", per_sensor, model.domain.mean) +
-          c.array(real, "inverse_scale", per_sensor, model.domain.inverse_scale) +
-          c.array(real, "rotations", per_component + per_sensor, model.domain.rotations) +
-          c.array(real, "loadings", per_component + per_sensor, model.domain.loadings) +
+  text += c.array(real, "mean", per_input, model.domain.mean) +
+          c.array(real, "inverse_scale", per_input, model.domain.inverse_scale) +
+          c.array(real, "rotations", per_component + per_input, model.domain.rotations) +
+          c.array(real, "loadings", per_component + per_input, model.domain.loadings) +
           c.array(real, "inverse_score_variance", per_component, model.domain.inverse_score_variance) +
           c.array(real, "centre_um", per_error, model.centre_um);
   text += "/* What a working sensor can do. */\n";
@@ -205,6 +267,17 @@ std::string constants(const typename HostCompensator<Scalar>::Model& model,
   text += "/* What an axis may do. */\n";
   text += "static const uint32_t " + n + "_hold_steps = " + c.literal(settings.hold_steps) + ";\n";
   text += c.array(real, "clamp_um", per_error, clamp) + c.array(real, "slew_um_per_step", per_error, slew);
+  if (request.wishes.probe) {
+    std::vector<Scalar> largest, jump, longest;
+    for (const auto& probe : settings.probe) {
+      largest.push_back(probe.largest_um);
+      jump.push_back(probe.jump_um);
+      longest.push_back(probe.longest_s);
+    }
+    text += "/* What a probe's reading is judged by. */\n";
+    text += c.array(real, "probe_largest_um", per_error, largest) + c.array(real, "probe_jump_um", per_error, jump) +
+            c.array(real, "probe_longest_steps", per_error, longest);
+  }
   return text;
 }
 
@@ -214,7 +287,7 @@ std::string c_compensator(const ExportRequest& request, bool with_self_test) {
   auto model = narrow_model<Scalar>(request.trained, request.wishes.domain_limit);
   const auto settings = settings_for<Scalar>(request.trained, request.wishes);
   if (model.domain.rotations.empty()) {  // C has no arrays of length 0; one component of zeros adds nothing
-    model.domain.rotations = model.domain.loadings = {std::vector<Scalar>(model.sensors())};
+    model.domain.rotations = model.domain.loadings = {std::vector<Scalar>(model.inputs())};
     model.domain.inverse_score_variance = {0};
   }
   const std::string n = request.name;
@@ -229,25 +302,38 @@ std::string c_compensator(const ExportRequest& request, bool with_self_test) {
                  ", " + c.literal(vector.offset_um) + ", " + c.literal(vector.status) + "},\n";
     }
   }
-  const std::map<std::string, std::string> values{{"n", n},
-                                                  {"N", upper_case(n)},
-                                                  {"0", c.literal(Scalar(0))},
-                                                  {"1", c.literal(Scalar(1))},
-                                                  {"NO_ZERO", c.literal(Scalar(-1e9))},
-                                                  {"MOST_OWN", c.literal(Scalar(0.99))},
-                                                  {"sqrt", single ? "sqrtf" : "sqrt"},
-                                                  {"REAL_MAX", single ? "FLT_MAX" : "DBL_MAX"},
-                                                  {"SIGN", request.wishes.sign == OutputSign::correction ? "-" : ""},
-                                                  {"sign", sign_name(request.wishes.sign)},
-                                                  {"period", exact_text(request.wishes.period_s)},
-                                                  {"UNIT", request.unit.name},
-                                                  {"unit", request.unit.identifier},
-                                                  {"vectors", vectors},
-                                                  {"vector_count", std::to_string(count)},
-                                                  {"tolerance", single ? "1.0e-3F" : "1.0e-9"}};
+  using Guard = DomainGuard<Scalar, dynamic_size, dynamic_size>;
+  const bool lags = !model.features.lag_sensor.empty();
+  const std::string known_off = lags ? " &&\n      (off_periods != " + upper_case(n) + "_OFF_UNKNOWN)" : "";
+  const std::string stored_too = lags ? ", and every minute for where the lags are" : "";
+  const std::vector<std::string> parts{has_features(model) ? "features" : "plain",
+                                       request.wishes.probe ? "probe" : "unprobed"};
+  const std::map<std::string, std::string> values{
+      {"n", n},
+      {"N", upper_case(n)},
+      {"0", c.literal(Scalar(0))},
+      {"1", c.literal(Scalar(1))},
+      {"NO_ZERO", c.literal(Scalar(-1e9))},
+      {"MOST_OWN", c.literal(Scalar(0.99))},
+      {"sqrt", single ? "sqrtf" : "sqrt"},
+      {"REAL_MAX", single ? "FLT_MAX" : "DBL_MAX"},
+      {"SIGN", request.wishes.sign == OutputSign::correction ? "-" : ""},
+      {"sign", sign_name(request.wishes.sign)},
+      {"period", exact_text(request.wishes.period_s)},
+      {"UNIT", request.unit.name},
+      {"unit", request.unit.identifier},
+      {"INPUTS", inputs_name(model, upper_case(n))},
+      {"SWEEPS", std::to_string(Guard::fill_in_sweeps) + "U"},
+      {"LEFT", request.wishes.sign == OutputSign::correction ? "less the offset applied" : "and the offset applied"},
+      {"OFF", c.literal(TestCourse<Scalar>::off_periods)},
+      {"KNOWN_OFF", known_off},
+      {"STORED_TOO", stored_too},
+      {"vectors", vectors},
+      {"vector_count", std::to_string(count)},
+      {"tolerance", single ? "1.0e-3F" : "1.0e-9"}};
   return "typedef " + std::string(single ? "float " : "double ") + n + "_real;\n\n" +
-         constants<Scalar>(model, settings, request) + fill_template(body, values) +
-         (with_self_test ? fill_template(self_test, values) : "");
+         constants<Scalar>(model, settings, request) + fill_template(chosen_parts(body, parts), values) +
+         (with_self_test ? fill_template(chosen_parts(self_test, parts), values) : "");
 }
 
 }  // namespace
@@ -261,7 +347,8 @@ ControllerSource export_c(const ExportRequest& request) {
   const std::string N = upper_case(request.name);
   return "/* Thermal compensation, C99.\n\n" +
          fill_template(
-             usage,
+             chosen_parts(usage, {request.trained.features.empty() ? "plain" : "features",
+                                  request.wishes.probe ? "probe" : "unprobed"}),
              {{"n", request.name},
               {"N", N},
               {"period", exact_text(request.wishes.period_s)},

@@ -135,6 +135,7 @@ std::string card_unit(const std::string& control) {
 
 ControllerSource export_card(const ExportRequest& request) {
   const Control& control = *find_control(request.control);
+  require_formula(request, "card", "what is entered at a control is a formula");
   const auto settings = settings_for<double>(request.trained, request.wishes);
   std::string text = "# Thermal compensation at " + control.title + "\n\n**Not run on that control.** " +
                      "What is said of it comes from the manuals cited below; try it with the axes clear.\n\n";

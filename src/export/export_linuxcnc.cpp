@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "export/c_source.hpp"
 #include "export/source_text.hpp"
 #include "thermfit/error.hpp"
@@ -27,6 +29,13 @@ static double since_step_s = 0.0;
 static bool ready = false;
 static bool enabled = false, restored = false, probed = false; /* the pins before, for their edges */
 static bool resumes = false;
+@?probe@
+static bool probe_before[@N@_ERRORS];
+@.@
+@?features@
+static uint32_t shown_zero = 0U; /* the status bits of the zero when the pins to store were set last */
+static double since_shown_s = 0.0;
+@.@
 
 /* What survives the text that halcmd prints, seven digits. */
 static double rounded_degC(double value) { return floor(value * 1e4 + 0.5) / 1e4; }
@@ -54,9 +63,16 @@ FUNCTION(_) {
   resumes = resumes || (restore && !restored);
   restored = restore;
   if (enable && resumes) {
-    @n@_retained kept = {@N@_VALID_MARK, @N@_MODEL, *__comp_inst->set_zero_through ? 1U : 0U, {@set_zeros@},
+    @n@_retained kept = {@set_session@@N@_VALID_MARK, @N@_MODEL, *__comp_inst->set_zero_through ? 1U : 0U, {@set_zeros@},
                          *__comp_inst->set_zero_digest};
+@?plain@
     @n@_resume(&device, &kept, NULL);
+@.@
+@?features@
+    const double off_periods = *__comp_inst->set_off / @period@;
+    @n@_resume_after(&device, &kept,
+                     @n@_within(off_periods, 0.0, 4e9) ? (uint32_t)(off_periods + 0.5) : @N@_OFF_UNKNOWN, NULL);
+@.@
     resumes = false;
   } else if (enable && !enabled) {
     @n@_start(&device, NULL);
@@ -68,6 +84,19 @@ FUNCTION(_) {
     @n@_datum(&device);
   }
   probed = datum;
+@?probe@
+  {
+    const bool probe_now[@N@_ERRORS] = {@probe_now@};
+    const double probe_@unit@[@N@_ERRORS] = {@probe@};
+    hal_u32_t *const told_pins[@N@_ERRORS] = {@probe_told@};
+    for (j = 0U; j < @N@_ERRORS; j++) {
+      if (probe_now[j] && !probe_before[j]) {
+        *told_pins[j] = @n@_probe(&device, j, probe_@unit@[j] / @N@_UNIT_PER_UM);
+      }
+      probe_before[j] = probe_now[j];
+    }
+  }
+@.@
 
   since_step_s += period_s;
   if (since_step_s >= @period@ - 0.5 * period_s) {
@@ -84,13 +113,34 @@ FUNCTION(_) {
     *__comp_inst->state = @N@_STATE(status);
     *__comp_inst->sensor = @N@_SENSOR(status);
     *__comp_inst->fault = @N@_FAULT(status);
+@?features@
+    since_shown_s += (double)periods * @period@;
+    if (since_shown_s >= 60.0 || shown_zero != (status & 0x70000000U)) {
+      hal_float_t *const lag_pins[@N@_LAGS] = {@lag_pins@};
+      hal_float_t *const lag_zero_pins[@N@_LAGS] = {@lag_zero_pins@};
+      since_shown_s = 0.0;
+      shown_zero = status & 0x70000000U;
+@.@
     @n@_retain(&device, &kept);
     for (i = 0U; i < @N@_SENSORS; i++) {
       kept.zero_degC[i] = rounded_degC(kept.zero_degC[i]);
       *zero_pins[i] = kept.zero_degC[i];
     }
+@?features@
+      for (i = 0U; i < @N@_LAGS; i++) {
+        kept.lag_degC[i] = rounded_degC(kept.lag_degC[i]);
+        kept.lag_zero_degC[i] = rounded_degC(kept.lag_zero_degC[i]);
+        *lag_pins[i] = kept.lag_degC[i];
+        *lag_zero_pins[i] = kept.lag_zero_degC[i];
+      }
+      kept.climate_degC = rounded_degC(kept.climate_degC);
+      *__comp_inst->climate = kept.climate_degC;
+@.@
     *__comp_inst->zero_through = kept.through_zero != 0U;
     *__comp_inst->zero_digest = kept.mark != 0U ? @n@_digest_of(&kept) : 0U;
+@?features@
+    }
+@.@
     *__comp_inst->zero_source = @N@_ZERO(status);
     *__comp_inst->zero_pending = (status & @N@_ZERO_PENDING) != 0U;
   }
@@ -187,6 +237,17 @@ change heartbeat with each new set.
 Pulse datum whenever the work offset is probed. To keep the zero over a power cycle, store zero-<sensor>, zero-through
 and zero-digest when zero-digest changes; next time set set-zero-<sensor>, set-zero-through and set-zero-digest to them,
 then raise restore. What was stored torn, or for another model, is refused: zero-source stays 0.
+@?features@
+
+The model has lags: store lag-<n>, lag-zero-<n> and climate with the zero. They are set once a minute and when the zero
+changes, so that a script reads them together. Next time set set-off to the seconds since they were read: not known, the
+zero is refused too.
+@.@
+@?probe@
+
+Set probe-<error> to what a probe has measured, the whole thermal error since the zero (what is left of it, less the
+offset applied; plus it with --sign error), and pulse probe-<error>-now; probe-<error>-told says what became of it.
+@.@
 )";
 
 }  // namespace
@@ -204,7 +265,14 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
       if (c == '"') c = '\'';
     text += safe + "\n";
   }
-  text += fill_template(manual, {{"p", prefix}, {"scale", scale}}) + "\"\"\";\n";
+  const bool derived = !request.trained.features.empty(), probe = request.wishes.probe;
+  const std::vector<std::string> parts{derived ? "features" : "plain", probe ? "probe" : "unprobed"};
+  std::vector<std::string> lags;
+  if (derived) {
+    const std::size_t count = std::max<std::size_t>(1, detail::lags_of(request.trained).size());
+    for (std::size_t k = 1; k <= count; ++k) lags.push_back(std::to_string(k));
+  }
+  text += fill_template(chosen_parts(manual, parts), {{"p", prefix}, {"scale", scale}}) + "\"\"\";\n";
   const auto sensors = identifiers(request.trained.temperatures), errors = identifiers(request.trained.errors);
   Pins pins(prefix);
   const auto add_for_sensors = [&](const std::string& type, const std::string& before, const std::string& what) {
@@ -235,18 +303,47 @@ ControllerSource export_linuxcnc(const ExportRequest& given) {
   add_for_sensors("in float", "set-zero-", "degC, the same pin without set- of before");
   pins.add("in bit", "set-zero-through", "zero-through of before");
   pins.add("in u32", "set-zero-digest", "zero-digest of before");
+  for (const std::string& lag : lags) {
+    const std::string what = "degC, lag " + lag + " of temperatures, to be stored with the zero";
+    pins.add("out float", "lag-" + lag, what, "", "NAN");
+    pins.add("out float", "lag-zero-" + lag, what + ": where it was then", "", "NAN");
+    pins.add("in float", "set-lag-" + lag, "degC, lag-" + lag + " of before", "", "NAN");
+    pins.add("in float", "set-lag-zero-" + lag, "degC, lag-zero-" + lag + " of before", "", "NAN");
+  }
+  if (derived) {
+    pins.add("out float", "climate", "degC, mean temperature where the session began, to be stored with the zero");
+    pins.add("in float", "set-climate", "degC, climate of before");
+    pins.add("in float", "set-off", "s since the pins to store were read; nan: not known, no lags, no zero", "", "NAN");
+  }
+  for (std::size_t j = 0; j < errors.size() && probe; ++j) {
+    const std::string &name = request.trained.errors[j], error = hal_name(errors[j]);
+    pins.add("in float", "probe-" + error, request.unit.name + ", the whole thermal error measured by a probe", name);
+    pins.add("in bit", "probe-" + error + "-now", "rising: it was measured now", name);
+    pins.add("out u32", "probe-" + error + "-told",
+             "0 taken 1 no number 2 too large 3 to be repeated 4 nothing to compare with", name);
+  }
   pins.add("in bit", "restore", "rising: (re)starts relative to the zero of the set-zero pins");
   pins.add("out u32", "status",
            "status word: state 0-3, outside domain 4, clamped 5, slewing 6, sensor 8-15, fault 16-19, sensors not used "
-           "20-27, zero-source 28-29, zero-pending 30");
+           "20-27, zero-source 28-29, zero-pending 30" +
+               std::string(probe ? ", a probe corrects 31" : ""));
   pins.add("out u32", "state", "0 off 1 starting 2 tracking 3 substituting 4 holding 5 fallback 6 stopping 7 no datum");
   pins.add("out u32", "sensor", "first sensor not used, from 1; 0 none");
   pins.add("out u32", "fault", "1 not finite 2 range 3 rate 4 stuck 5 recovering 6 no reference 7 stale 8 disagrees");
   text += pins.text() + "param r float counts_scale = " + scale + " \"" + request.unit.name + " per count\";\n";
   const std::string pin = "__comp_inst->";
   return text + fill_template(
-                    component_body,
+                    chosen_parts(component_body, parts),
                     {{"n", request.name},
+                     {"set_session", derived ? "{" + each(lags, "rounded_degC(*" + pin + "set_lag_", ")") + "}, {" +
+                                                   each(lags, "rounded_degC(*" + pin + "set_lag_zero_", ")") +
+                                                   "}, rounded_degC(*" + pin + "set_climate), "
+                                             : ""},
+                     {"lag_pins", each(lags, pin + "lag_")},
+                     {"lag_zero_pins", each(lags, pin + "lag_zero_")},
+                     {"probe", each(errors, "*" + pin + "probe_")},
+                     {"probe_now", each(errors, "*" + pin + "probe_", "_now")},
+                     {"probe_told", each(errors, pin + "probe_", "_told")},
                      {"N", upper_case(request.name)},
                      {"period", real_text(request.wishes.period_s)},
                      {"unit", request.unit.identifier},

@@ -70,6 +70,7 @@ Message node(const std::string& operation, const std::string& a, const std::stri
 
 ControllerSource export_onnx(const ExportRequest& request) {
   const TrainedModel& model = request.trained;
+  require_formula(request, "onnx", "ONNX holds a formula of one sample");
   const double factor = static_cast<double>(static_cast<int>(request.wishes.sign)) * request.unit.per_um;
   const Matrix coefficients = model.model.coefficients * factor;
   const Matrix intercept = model.model.intercept.transpose() * factor;

@@ -1,4 +1,5 @@
 #include "export/source_text.hpp"
+#include "export/st_features.hpp"
 #include "export/st_text.hpp"
 #include "export/test_vectors.hpp"
 #include "thermfit/error.hpp"
@@ -9,13 +10,20 @@
 /// The zero of datum.hpp lives in VAR RETAIN. There are no bytes to digest, so its check is a sum: 1 where the
 /// intercept drops out, plus the square root of the i-th prime times the zero of sensor i, less 1e4 where it has none.
 /// Those roots are independent over the rationals: two zeros of rounded readings, one torn out of the other, never add
-/// up to the same.
+/// up to the same. Of a model with lags it covers where they are too, and is made anew in each step.
 
 namespace thermfit::cli {
 namespace {
 
 template <class Scalar>
-class StWriter : StText<Scalar> {
+class StWriter : StFeatures<Scalar> {
+  using Features = StFeatures<Scalar>;
+  using Features::derived;
+  using Features::input;
+  using Features::inputs;
+  using Features::lags;
+  using Features::model_;
+  using Features::settings_;
   using Text = StText<Scalar>;
   using Text::count;
   using Text::finite;
@@ -23,6 +31,7 @@ class StWriter : StText<Scalar> {
   using Text::most_steps;
   using Text::number;
   using Text::numbered;
+  using Text::of;
   using Text::of_steps;
   using Text::real;
   using Text::set;
@@ -35,9 +44,8 @@ class StWriter : StText<Scalar> {
   using Device = HostCompensator<Scalar>;
 
   StWriter(const ExportRequest& request, const typename Device::Model& model, const typename Device::Settings& settings)
-      : request_(request),
-        model_(model),
-        settings_(settings),
+      : Features(model, settings),
+        request_(request),
         sensors_(identifiers(request.trained.temperatures)),
         errors_(identifiers(request.trained.errors)) {}
 
@@ -45,21 +53,27 @@ class StWriter : StText<Scalar> {
     line("FUNCTION_BLOCK " + request_.name);
     variables();
     commands();
+    probe();
+    set("steps", "Periods");
+    line("IF steps > " + most_steps + " THEN steps := " + most_steps + "; END_IF;");
     line("IF state = 0 THEN");
+    if (derived()) count("asleep_steps");
     nothing_to_tell();
     for (const char* zero : {"shown_from := 0;", "shown_pending := FALSE;"}) line(zero);
     line("ELSIF Periods > 0 THEN");
-    set("steps", "Periods");
-    line("IF steps > " + most_steps + " THEN steps := " + most_steps + "; END_IF;");
     nothing_to_tell();
     heartbeat();
     guard();
+    this->look();
     trust();
+    this->settle();
     collect();
+    age_probe();
     judge();
     advance();
     move();
     show_zero();
+    if (derived()) retain();
     line("END_IF;");
     outputs();
     line("END_FUNCTION_BLOCK");
@@ -97,7 +111,7 @@ class StWriter : StText<Scalar> {
     line("END_IF;");
     line("IF NOT Done THEN");
     std::string call = "device(Enable := enable, Datum := datum";
-    for (std::size_t i = 0; i < sensors(); ++i) call += ", " + input(i) + " := " + numbered("reading", i);
+    for (std::size_t i = 0; i < sensors(); ++i) call += ", " + reading_of(i) + " := " + numbered("reading", i);
     line(call + ");");
     set("datum", "FALSE");
     line("remaining := remaining - 1;");
@@ -122,9 +136,8 @@ class StWriter : StText<Scalar> {
   std::size_t sensors() const { return sensors_.size(); }
   std::size_t errors() const { return errors_.size(); }
   std::size_t components() const { return model_.domain.rotations.size(); }
-  std::string input(std::size_t i) const { return "Temperature_" + sensors_[i]; }
+  std::string reading_of(std::size_t i) const { return "Temperature_" + sensors_[i]; }
   std::string output(std::size_t j) const { return "Offset_" + errors_[j] + "_" + request_.unit.identifier; }
-  static std::string of(std::size_t i, const std::string& what) { return "s" + number(i) + "_" + what; }
 
   std::string row(const TestVector<Scalar>& vector) const {
     std::string text =
@@ -146,7 +159,14 @@ class StWriter : StText<Scalar> {
     line("Heartbeat : UDINT := 0; (* changes whenever the readings are new; 0 from the start: there is none *)");
     line("Periods : UDINT := 1; (* of the cycle since the call before; 0: nothing moves *)");
     for (std::size_t i = 0; i < sensors(); ++i)
-      line(input(i) + " : " + type() + " := 0.0; (* degC, " + comment_text(request_.trained.temperatures[i]) + " *)");
+      line(reading_of(i) + " : " + type() + " := 0.0; (* degC, " + comment_text(request_.trained.temperatures[i]) +
+           " *)");
+    this->feature_inputs();
+    for (std::size_t j = 0; j < errors() && request_.wishes.probe; ++j) {
+      line(probe_of(j) + " : " + type() + " := 0.0; (* um, the whole thermal error measured by a probe: what is left " +
+           (settings_.sign == OutputSign::correction ? "less" : "and") + " the offset applied *)");
+      line(probe_of(j) + "_new : BOOL := FALSE; (* rising: it was read now *)");
+    }
     line("END_VAR");
     line("VAR_OUTPUT");
     for (std::size_t j = 0; j < errors(); ++j)
@@ -154,7 +174,8 @@ class StWriter : StText<Scalar> {
            sign_name(request_.wishes.sign) + ", " + comment_text(request_.trained.errors[j]) + " *)");
     line(
         "Status : UDINT := 0; (* State_now + 16 outside domain + 32 clamped + 64 slewing + 256 * Sensor + 65536 * "
-        "Fault + 1048576 * sensors not used + 268435456 * Zero_source + 1073741824 * Zero_pending *)");
+        "Fault + 1048576 * sensors not used + 268435456 * Zero_source + 1073741824 * Zero_pending" +
+        std::string(request_.wishes.probe ? " + 2147483648 * a probe corrects *)" : " *)"));
     line(
         "State_now : UDINT := 0; (* 0 off, 1 starting, 2 tracking, 3 substituting, 4 holding, 5 fallback, 6 stopping, "
         "7 no datum *)");
@@ -165,6 +186,10 @@ class StWriter : StText<Scalar> {
     line("Zero_source : UDINT := 0; (* 0 none, or off; 1 first samples, 2 datum, 3 retained *)");
     line("Zero_pending : BOOL := FALSE; (* a zero was asked for and is not there yet *)");
     line("Ok : BOOL := FALSE; (* all sensors used, in the training domain, not clamped *)");
+    for (std::size_t j = 0; j < errors() && request_.wishes.probe; ++j)
+      line(probe_of(j) +
+           "_told : UDINT := 4; (* of the last reading: 0 taken, 1 no number, 2 too large, 3 to be repeated, "
+           "4 nothing is predicted to compare with *)");
     line("END_VAR");
     retained_variables();
     line("VAR");
@@ -194,6 +219,8 @@ class StWriter : StText<Scalar> {
     for (std::size_t j = 0; j < errors(); ++j)
       line(numbered("offset", j) + ", " + numbered("demand", j) + ", " + numbered("other", j) + " : " + type() +
            " := 0.0;");
+    this->feature_variables();
+    probe_variables();
     line("END_VAR");
   }
 
@@ -208,6 +235,7 @@ class StWriter : StText<Scalar> {
       line(of(i, "zero") + " : " + type() + " := 0.0; (* degC *)");
       line(of(i, "zero_known") + " : BOOL := FALSE; (* FALSE: none, which is not 0 degC *)");
     }
+    this->retained_features();
     line("END_VAR");
   }
 
@@ -222,9 +250,16 @@ class StWriter : StText<Scalar> {
     set("zero_from", "0");
     line("IF zero_mark = " + valid_mark + " AND zero_model = " + std::to_string(model_.identity) + " THEN");
     check_sum();
-    set_if("zero_check = check_now", "zero_from", "3");
+    set_if("zero_check = check_now" + std::string(lags() > 0 ? " AND Off_periods < 4294967295" : ""), "zero_from", "3");
     line("END_IF;");
     set("forget", "zero_from = 0");
+    if (derived()) {
+      line("IF forget THEN");
+      this->forget_session();
+      line("ELSE");
+      this->restore_session();
+      line("END_IF;");
+    }
     line("END_IF;");
     line("IF running AND NOT Enable AND state <> 0 THEN");
     set("state", "6");
@@ -254,6 +289,7 @@ class StWriter : StText<Scalar> {
     set("held_steps", "0");
     set("silent_steps", "0");
     set("has_heartbeat", "FALSE");
+    drop_probe();
     set("state", "1");
     nothing_to_tell();
     if (model_.rise && settings_.zero.policy == ZeroPolicy::first) {
@@ -271,6 +307,7 @@ class StWriter : StText<Scalar> {
 
   void nothing_to_tell() {
     for (const char* flag : {"outside", "clamped", "slewing"}) set(flag, "FALSE");
+    if (request_.wishes.probe) set("probe_corrects", "FALSE");
     for (const char* counter : {"unused", "first_unused", "first_fault"}) set(counter, "0");
   }
 
@@ -284,16 +321,94 @@ class StWriter : StText<Scalar> {
     line("IF zero_through THEN check_now := 1.0; ELSE check_now := 0.0; END_IF;");
     unsigned prime = 1;
     const auto divides = [&](unsigned factor) { return prime % factor == 0; };
-    for (std::size_t i = 0; i < sensors(); ++i) {
+    auto all = this->retained_numbers();
+    for (std::size_t i = sensors(); i-- > 0;) all.insert(all.begin(), {of(i, "zero"), of(i, "zero_known")});
+    for (const auto& [value, known] : all) {
       for (bool found = false; !found;) {
         found = true;
         ++prime;
         for (unsigned factor = 2; factor * factor <= prime; ++factor) found = found && !divides(factor);
       }
       const std::string weight = real(std::sqrt(static_cast<Scalar>(prime)));
-      set("check_now", "check_now + " + weight + " * " + of(i, "zero"));
-      set_if("NOT " + of(i, "zero_known"), "check_now", "check_now - " + weight + " * 10000.0");
+      set("check_now", "check_now + " + weight + " * " + value);
+      if (!known.empty()) set_if("NOT " + known, "check_now", "check_now - " + weight + " * 10000.0");
     }
+  }
+
+  /// What is retained has moved. The mark is away while it does: a power cut in between leaves none.
+  void retain() {
+    line("IF zero_from <> 0 THEN");
+    set("zero_mark", "0");
+    check_sum();
+    set("zero_check", "check_now");
+    set("zero_mark", valid_mark);
+    line("END_IF;");
+  }
+
+  std::string probe_of(std::size_t j) const { return "Probe_" + errors_[j]; }
+  static std::string of_probe(std::size_t j, const std::string& what) { return "p" + number(j) + "_" + what; }
+
+  void probe_variables() {
+    if (!request_.wishes.probe) return;
+    line("probe_corrects : BOOL := FALSE;");
+    line("corrected, missed_um, away_um : " + type() + " := 0.0;");
+    for (std::size_t j = 0; j < errors(); ++j) {
+      line(of_probe(j, "held") + ", " + of_probe(j, "waiting_um") + " : " + type() + " := 0.0;");
+      line(of_probe(j, "age") + " : UDINT := 0;");
+      line(of_probe(j, "before") + ", " + of_probe(j, "taken") + ", " + of_probe(j, "waiting") + ", " +
+           of_probe(j, "agrees") + " : BOOL := FALSE;");
+    }
+  }
+
+  /// Compensator::probe, of the demand of the step before.
+  void probe() {
+    if (!request_.wishes.probe) return;
+    line("(* readings of the probe *)");
+    for (std::size_t j = 0; j < errors(); ++j) {
+      const ProbeLimits<Scalar>& limits = settings_.probe[j];
+      const std::string told = probe_of(j) + "_told";
+      line("IF " + probe_of(j) + "_new AND NOT " + of_probe(j, "before") + " THEN");
+      set(told, "4");
+      line("IF state = 2 OR state = 3 THEN");
+      set("missed_um", probe_of(j) + " - " + numbered("demand", j));
+      set("away_um", "missed_um - " + of_probe(j, "waiting_um"));
+      without_sign("away_um");
+      set(of_probe(j, "agrees"), of_probe(j, "waiting") + " AND away_um <= " + real(limits.jump_um));
+      line("IF NOT (" + finite("missed_um") + ") THEN");
+      set(told, "1");
+      line("ELSIF missed_um > " + real(limits.largest_um) + " OR missed_um < (-" + real(limits.largest_um) + ") THEN");
+      set(told, "2");
+      line("ELSE");
+      set("away_um", "missed_um - " + of_probe(j, "held"));
+      without_sign("away_um");
+      line("IF NOT " + of_probe(j, "agrees") + " AND away_um > " + real(limits.jump_um) + " THEN");
+      set(of_probe(j, "waiting"), "TRUE");
+      set(of_probe(j, "waiting_um"), "missed_um");
+      set(told, "3");
+      line("ELSE");
+      set(of_probe(j, "waiting"), "FALSE");
+      set(of_probe(j, "held"), "missed_um");
+      set(of_probe(j, "age"), "0");
+      set(of_probe(j, "taken"), "TRUE");
+      set(told, "0");
+      line("END_IF;");
+      line("END_IF;");
+      line("END_IF;");
+      line("END_IF;");
+      set(of_probe(j, "before"), probe_of(j) + "_new");
+    }
+  }
+
+  void drop_probe() {
+    for (std::size_t j = 0; j < errors() && request_.wishes.probe; ++j) {
+      for (const char* what : {"held", "waiting_um"}) set(of_probe(j, what), "0.0");
+      set(of_probe(j, "age"), "0");
+      for (const char* what : {"taken", "waiting"}) set(of_probe(j, what), "FALSE");
+    }
+  }
+
+  void age_probe() {
+    for (std::size_t j = 0; j < errors() && request_.wishes.probe; ++j) count(of_probe(j, "age"));
   }
 
   void heartbeat() {
@@ -326,24 +441,24 @@ class StWriter : StText<Scalar> {
     set(of(i, "fault"), "0");
     line("IF stale THEN");
     set(of(i, "fault"), "7");
-    line("ELSIF NOT (" + finite(input(i)) + ") THEN");
+    line("ELSIF NOT (" + finite(reading_of(i)) + ") THEN");
     set(of(i, "fault"), "1");
-    line("ELSIF NOT (" + within(input(i), limits.lowest_degC, limits.highest_degC) + ") THEN");
+    line("ELSIF NOT (" + within(reading_of(i), limits.lowest_degC, limits.highest_degC) + ") THEN");
     set(of(i, "fault"), "2");
     line("ELSIF " + of(i, "seen") + " THEN");
-    set("change", input(i) + " - " + of(i, "reading"));
+    set("change", reading_of(i) + " - " + of(i, "reading"));
     without_sign("change");
     set_if("NOT (change <= " + real(limits.largest_step_K) + " * " + of_steps(of(i, "bad") + " + steps") + ")",
            of(i, "fault"), "3");
     line("END_IF;");
     line("IF " + of(i, "fault") + " = 0 THEN");
-    line("IF " + of(i, "seen") + " AND " + input(i) + " = " + of(i, "reading") + " THEN");
+    line("IF " + of(i, "seen") + " AND " + reading_of(i) + " = " + of(i, "reading") + " THEN");
     count(of(i, "still"));
     line("ELSE");
     set(of(i, "still"), "0");
     line("END_IF;");
     set_if("NOT " + of(i, "seen"), "newcomer", "TRUE");
-    set(of(i, "reading"), input(i));
+    set(of(i, "reading"), reading_of(i));
     set(of(i, "seen"), "TRUE");
     set_if(of(i, "still") + " < all_still", "all_still", of(i, "still"));
     line("END_IF;");
@@ -542,6 +657,8 @@ class StWriter : StText<Scalar> {
       set_if(of(i, "counted"), of(i, "zero"), numbered("rank", samples() / 2));
       trust_if(of(i, "counted") + " AND " + of(i, "returning"), i);
     }
+    this->take_lag_zeros();
+    drop_probe();
     set("zero_through", settings_.zero.through_zero ? "TRUE" : "wanted_from = 2");
     set("zero_from", "wanted_from");
     set("wanted_from", "0");
@@ -573,6 +690,7 @@ class StWriter : StText<Scalar> {
   /// The readings less the zero, which is 0 where there is none.
   void values() {
     for (std::size_t i = 0; i < sensors(); ++i) set(of(i, "value"), of(i, "reading") + " - " + of(i, "zero"));
+    this->derive_values();
   }
   /// The same as the training domain takes them.
   void domain_values() {
@@ -588,8 +706,8 @@ class StWriter : StText<Scalar> {
       const std::string sum = numbered(result, j);
       line("IF " + through() + " THEN " + sum + " := 0.0; ELSE " + sum + " := " + real(from.intercept_um[j]) +
            "; END_IF;");
-      for (std::size_t i = 0; i < sensors(); ++i)
-        set(sum, sum + " + " + real(from.coefficients[j][i]) + " * " + of(i, "value"));
+      for (std::size_t i = 0; i < inputs(); ++i)
+        set(sum, sum + " + " + real(from.coefficients[j][i]) + " * " + input(i));
     }
   }
 
@@ -624,19 +742,22 @@ class StWriter : StText<Scalar> {
   }
 
   std::string standardised(std::size_t i) const {
-    return "(" + of(i, "value") + " - " + real(model_.domain.mean[i]) + ") * " + real(model_.domain.inverse_scale[i]);
+    return "(" + input(i) + " - " + real(model_.domain.mean[i]) + ") * " + real(model_.domain.inverse_scale[i]);
   }
 
   void apply_domain() {
     line("IF follow THEN");
     line("(* how far from the samples of training, a missing sensor at what the others let expect *)");
     domain_values();
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      if (!model_.has_substitute[i]) continue;
-      line("IF first_unused = " + number(i) + " THEN");
-      fill_in(i);
-      line("END_IF;");
-    }
+    if (derived())
+      fill_in_channels();
+    else
+      for (std::size_t i = 0; i < sensors(); ++i) {
+        if (!model_.has_substitute[i]) continue;
+        line("IF first_unused = " + number(i) + " THEN");
+        fill_in(i);
+        line("END_IF;");
+      }
     share_inside();
     line("IF share < 1.0 THEN");
     set("outside", "TRUE");
@@ -659,6 +780,34 @@ class StWriter : StText<Scalar> {
     if (settings_.domain_policy == DomainPolicy::hold) set("follow", "FALSE");
     line("END_IF;");
     line("END_IF;");
+  }
+
+  /// The channels of the lost sensor, first at their means: then the scores are those of the others.
+  void fill_in_channels() {
+    const auto for_each_lost = [&](const auto& write) {
+      for (std::size_t i = 0; i < sensors(); ++i) {
+        if (!model_.has_substitute[i]) continue;
+        line("IF first_unused = " + number(i) + " THEN");
+        write(i);
+        line("END_IF;");
+      }
+    };
+    line("IF unused > 0 THEN");
+    for_each_lost([&](std::size_t i) {
+      for (const std::size_t f : this->made_of(i)) set(input(f), real(model_.domain.mean[f]));
+    });
+    scores();
+    for_each_lost([&](std::size_t i) { this->fill_in_all(i); });
+    line("END_IF;");
+  }
+
+  void scores() {
+    for (std::size_t a = 0; a < components(); ++a) {
+      const std::string score = numbered("score", a);
+      set(score, "0.0");
+      for (std::size_t i = 0; i < inputs(); ++i)
+        set(score, score + " + " + real(model_.domain.rotations[a][i]) + " * (" + standardised(i) + ")");
+    }
   }
 
   /// DomainGuard::fill_in.
@@ -688,11 +837,11 @@ class StWriter : StText<Scalar> {
     for (std::size_t a = 0; a < components(); ++a) {
       const std::string score = numbered("score", a);
       set(score, "0.0");
-      for (std::size_t i = 0; i < sensors(); ++i)
+      for (std::size_t i = 0; i < inputs(); ++i)
         set(score, score + " + " + real(domain.rotations[a][i]) + " * (" + standardised(i) + ")");
       set("t_squared", "t_squared + " + score + " * " + score + " * " + real(domain.inverse_score_variance[a]));
     }
-    for (std::size_t i = 0; i < sensors(); ++i) {
+    for (std::size_t i = 0; i < inputs(); ++i) {
       set("residual", standardised(i));
       for (std::size_t a = 0; a < components(); ++a)
         set("residual", "residual - " + real(domain.loadings[a][i]) + " * " + numbered("score", a));
@@ -741,7 +890,17 @@ class StWriter : StText<Scalar> {
       const std::string clamp = real(settings_.outputs[j].clamp_um), offset = numbered("offset", j);
       set("target", "0.0");
       line("IF state = 2 OR state = 3 THEN");
-      set("wanted", (settings_.sign == OutputSign::correction ? "-" : "") + numbered("demand", j));
+      std::string demand = numbered("demand", j);
+      if (request_.wishes.probe) {
+        set("corrected", demand);
+        line("IF " + of_probe(j, "taken") + " AND " + of_steps(of_probe(j, "age")) +
+             " <= " + real(settings_.probe[j].longest_s) + " THEN");
+        set("corrected", "corrected + " + of_probe(j, "held"));
+        set("probe_corrects", "TRUE");
+        line("END_IF;");
+        demand = "corrected";
+      }
+      set("wanted", (settings_.sign == OutputSign::correction ? "-" : "") + demand);
       line("IF wanted >= (-" + clamp + ") AND wanted <= " + clamp + " THEN");
       set("target", "wanted");
       line("ELSIF wanted > " + clamp + " THEN");
@@ -782,6 +941,7 @@ class StWriter : StText<Scalar> {
     set_if("clamped", "status_word", "status_word + 32");
     set_if("slewing", "status_word", "status_word + 64");
     set_if("shown_pending", "status_word", "status_word + 1073741824");
+    if (request_.wishes.probe) set_if("probe_corrects", "status_word", "status_word + 2147483648");
     set("Status", "status_word");
     set("State_now", "state");
     set("Sensor", "first_unused");
@@ -792,8 +952,6 @@ class StWriter : StText<Scalar> {
   }
 
   const ExportRequest& request_;
-  const typename Device::Model& model_;
-  const typename Device::Settings& settings_;
   std::vector<std::string> sensors_, errors_;
 };
 

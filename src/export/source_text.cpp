@@ -28,6 +28,25 @@ OffsetUnit offset_unit(const std::string& name) {
   throw Error("unit", "'" + name + "'", "um, mm, 0.1um");
 }
 
+std::string chosen_parts(std::string_view text, const std::vector<std::string>& wanted) {
+  std::string result;
+  bool keep = true;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end == text.npos ? end : end + 1);
+    text.remove_prefix(line.size());
+    if (line == "@.@\n") {
+      keep = true;
+    } else if (line.substr(0, 2) == "@?") {
+      const std::string part(line.substr(2, line.find('@', 2) - 2));
+      keep = std::find(wanted.begin(), wanted.end(), part) != wanted.end();
+    } else if (keep) {
+      result += line;
+    }
+  }
+  return result;
+}
+
 std::string fill_template(std::string_view text, const std::map<std::string, std::string>& values) {
   std::string result;
   while (true) {
@@ -79,6 +98,14 @@ std::string upper_case(std::string text) {
   return text;
 }
 
+void require_formula(const ExportRequest& request, const std::string& target, const std::string& why) {
+  if (request.trained.features.empty()) return;
+  throw Error("--target " + target,
+              "a model of the method " + request.trained.method +
+                  ", which remembers lags and the climate of the session: " + why,
+              "c, cpp, st, linuxcnc", "export it to one of these, or fit pls, mlr, pcr or ridge");
+}
+
 std::string sign_name(OutputSign sign) { return sign == OutputSign::error ? "error" : "correction"; }
 
 std::string policy_name(DomainPolicy policy) {
@@ -106,6 +133,11 @@ std::vector<std::string> facts(const ExportRequest& request) {
       request.wishes.sign == OutputSign::correction
           ? "     it is the correction, minus the predicted error: add it to the axis command"
           : "     it is the predicted thermal error: subtract it from the axis command"};
+  if (!model.features.empty())
+    lines.insert(lines.begin() + 6,
+                 "     and on channels derived from it: " + std::to_string(model.features.size()) + " in all, " +
+                     std::to_string(detail::lags_of(model).size()) + " lags; climates of training " +
+                     general_text(model.climate.lowest, 4) + " to " + general_text(model.climate.highest, 4) + " degC");
   for (std::size_t j = 0; j < model.errors.size(); ++j)
     lines.push_back("     " + model.errors[j] + ": clamp +-" + exact_text(settings.outputs[j].clamp_um) + " um, slew " +
                     exact_text(settings.outputs[j].slew_um_per_step) + " um per step of " +

@@ -12,6 +12,9 @@
 
 namespace thermfit::cli {
 
+/// `text` less the parts that are not `wanted`: lines from `@?part@` to `@.@`, both taken away.
+std::string chosen_parts(std::string_view text, const std::vector<std::string>& wanted);
+
 /// `text` with every `@key@` replaced. An unknown key is a bug and throws std::logic_error.
 std::string fill_template(std::string_view text, const std::map<std::string, std::string>& values);
 
@@ -33,6 +36,9 @@ std::string real_text(Scalar value) {
   const auto exponent = text.find('e');
   return exponent == std::string::npos ? text + ".0" : text.insert(exponent, ".0");
 }
+
+/// Refuses a model whose derived channels need a memory, where the target has none: throws Error.
+void require_formula(const ExportRequest& request, const std::string& target, const std::string& why);
 
 /// What every export says about itself, one line each, without comment marks: origin, digest, what goes in and comes
 /// out with unit and sign, limits.

@@ -24,6 +24,8 @@ class StText {
     const std::string text = upper_case(real_text(value));
     return value < 0 ? "(" + text + ")" : text;
   }
+  /// A variable of one sensor.
+  static std::string of(std::size_t i, const std::string& what) { return "s" + number(i) + "_" + what; }
   static std::string of_steps(const std::string& steps) { return "UDINT_TO_" + type() + "(" + steps + ")"; }
   static std::string finite(const std::string& value) {
     const std::string most = real(std::numeric_limits<Scalar>::max());
@@ -39,7 +41,8 @@ class StText {
     const bool closed_in_line = text.find("END_IF;") != std::string::npos && !starts("END_IF");
     if ((starts("END_") && !starts("END_FUNCTION")) || starts("ELSE") || starts("ELSIF")) indent_ -= 2;
     text_ += std::string(indent_, ' ') + text + '\n';
-    if (!closed_in_line && (starts("IF ") || starts("ELSE") || starts("ELSIF") || starts("CASE") || starts("VAR")))
+    if (!closed_in_line &&
+        (starts("IF ") || starts("ELSE") || starts("ELSIF") || starts("WHILE") || starts("CASE") || starts("VAR")))
       indent_ += 2;
   }
   void set(const std::string& variable, const std::string& value) { line(variable + " := " + value + ";"); }

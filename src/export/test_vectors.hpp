@@ -38,6 +38,7 @@ template <class Scalar>
 class TestCourse {
  public:
   using Device = HostCompensator<Scalar>;
+  static constexpr std::uint32_t off_periods = 7;  ///< of each power cycle
 
   /// `no_reading` stands for a reading that is missing; give a finite one where NaN cannot be written down. Then there
   /// are no infinities either.
@@ -162,13 +163,22 @@ class TestCourse {
     std::vector<Scalar> readings(model_.sensors());
     for (std::size_t i = 0; i < readings.size(); ++i) {
       const Scalar low = settings_.sensors[i].lowest_degC, high = settings_.sensors[i].highest_degC;
-      const Scalar mean = model_.domain.mean[i], scale = 1 / model_.domain.inverse_scale[i];
+      const std::size_t input = input_of(i);
+      const Scalar mean = model_.domain.mean[input], scale = 1 / model_.domain.inverse_scale[input];
       const Scalar cold = model_.rise ? low + (high - low) / 4 : mean - scale;
       const Scalar way = model_.rise ? mean + std::max(Scalar(0), spread - 1) * scale : (spread + 1) * scale;
       readings[i] = std::round(std::min(high, std::max(low, spread == 0 ? cold : cold + way)) * 64) / 64;
       if (!within(readings[i], low, high)) readings[i] = (low + high) / 2;
     }
     return readings;
+  }
+
+  /// The input that is the temperature of sensor i, or its rise.
+  std::size_t input_of(std::size_t i) const {
+    const auto& channels = model_.features.channels;
+    for (std::size_t f = 0; f < channels.size(); ++f)
+      if (channels[f].kind == ControllerFeatureKind::rise && channels[f].sensor == i) return f;
+    return channels.empty() ? i : 0;
   }
 
   void add(std::uint32_t repeat, typename Vector::Command command = Vector::none, std::uint32_t periods = 1,
@@ -181,7 +191,7 @@ class TestCourse {
       auto kept = device_->retained();
       if (command == Vector::torn_power_cycle) kept.digest ^= 1;
       device_.emplace(model_, settings_);
-      device_->resume(kept);
+      device_->resume(kept, off_periods);
     }
     for (std::uint32_t n = 0; n < repeat; ++n) device_->step(readings_, {periods, heartbeat_ += beat});
     vectors_.push_back({repeat, command, readings_, device_->offset_um(), device_->status().word, periods, beat});

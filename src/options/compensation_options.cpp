@@ -19,6 +19,8 @@ std::vector<Option> compensation_options() {
       {"--lost-after", "S", "bad readings for so long make a sensor lost; default 5", 0, false},
       {"--recover-after", "S", "good readings for so long make it trusted again; default 30", 0, false},
       {"--range-margin", "K", "readings may lie so far outside those of training; default 20", 0, false},
+      {"--probe-limit", "UM", "a probe corrects by no more; default: the clamp", 0, false},
+      {"--probe-age", "MIN", "a probe's reading counts so long; default: to the next", 0, false},
       {"--domain", "POLICY", "outside the training domain: ignore, warn (default), shrink, hold", 0, false},
       {"--domain-limit", "PERCENT", "the domain holds 95 or 99 (default) percent of ordinary samples", 0, false},
   };
@@ -34,6 +36,8 @@ CompensationWishes compensation_wishes(const Arguments& arguments) {
   wishes.recover_after_s = arguments.number("--recover-after", 0, 1e6).value_or(wishes.recover_after_s);
   wishes.range_margin_K = arguments.number("--range-margin", 0, 1000).value_or(wishes.range_margin_K);
   wishes.zero = arguments.choice("--zero", {"wait", "first"}, "wait") == "first" ? ZeroPolicy::first : ZeroPolicy::wait;
+  wishes.probe_largest_um = arguments.number("--probe-limit", 0, 1e6);
+  wishes.probe_age_s = 60 * arguments.number("--probe-age", 0, 1e7).value_or(wishes.probe_age_s / 60);
   wishes.through_zero = arguments.has("--through-zero");
   wishes.stale_s = arguments.number("--stale-after", 1e-6, 1e6).value_or(wishes.stale_s);
   if (arguments.choice("--sign", {"correction", "error"}, "correction") == "error") wishes.sign = OutputSign::error;

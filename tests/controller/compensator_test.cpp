@@ -254,6 +254,7 @@ TEMPLATE_TEST_CASE("ten million random steps: always finite, in the clamp, withi
     }
     void datum() { device.take_datum(); }
     void stop() { device.stop(); }
+    void probe(std::size_t, Scalar) {}
     void step(const std::array<Scalar, 3>& readings, std::uint32_t passed, std::uint32_t heartbeat) {
       remember();
       periods = static_cast<Scalar>(passed);

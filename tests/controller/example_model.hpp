@@ -46,3 +46,55 @@ inline thermfit::TrainedModel example_model() {
   m.tool_version = "0";
   return m;
 }
+
+/// The same machine with a model on derived channels of every kind: rises, lagged rises of two lags, rises times the
+/// climate and a difference; 11 coefficients an error, 4 lags.
+inline thermfit::TrainedModel example_transfer_model() {
+  using namespace thermfit;
+  TrainedModel m = example_model();
+  m.method = "transfer";
+  m.components = 0;
+  m.latent = {};
+  m.error_reference = ErrorReference::start;
+  for (Index p = 0; p < 3; ++p) m.features.push_back({FeatureKind::rise, p});
+  for (Index p = 0; p < 3; ++p) m.features.push_back({FeatureKind::lag, p, -1, 20});
+  m.features.push_back({FeatureKind::lag, 0, -1, 5});
+  for (Index p = 0; p < 3; ++p) m.features.push_back({FeatureKind::climate, p});
+  m.features.push_back({FeatureKind::difference, 0, 1});
+  m.climate = {18, 24, 20.5};
+  m.blocks = {{.01, .1, 1, 20}, {.01, .1, 1, 5}};
+  const Index n = m.inputs();
+  m.model.coefficients.resize(n, 2);
+  for (Index f = 0; f < n; ++f)
+    m.model.coefficients.row(f) << static_cast<double>((f * 7) % 5 - 2) / 8, static_cast<double>((f * 5) % 7 - 3) / 4;
+  m.model.intercept.setZero();
+  m.standardised_coefficients = m.model.coefficients;
+  m.temperature_mean = Vector::LinSpaced(n, 6, 1);
+  m.temperature_scale = Vector::LinSpaced(n, 3, 1);
+  m.error_mean = m.model.predict(m.temperature_mean);
+  m.domain.mean = m.temperature_mean;
+  m.domain.scale = m.temperature_scale;
+  m.domain.lowest = Vector::Constant(n, -20);
+  m.domain.highest = Vector::Constant(n, 40);
+  m.domain.rotations.resize(n, 2);  // orthonormal: the first two of the discrete cosines
+  for (Index f = 0; f < n; ++f)
+    for (Index a = 0; a < 2; ++a)
+      m.domain.rotations(f, a) =
+          std::sqrt((a == 0 ? 1. : 2.) / static_cast<double>(n)) *
+          std::cos(std::acos(-1.) * (static_cast<double>(f) + .5) * static_cast<double>(a) / static_cast<double>(n));
+  m.domain.loadings = m.domain.rotations;
+  m.domain.score_variance = Eigen::Vector2d(9, 4);
+  m.domain.t2_limit_95 = 8, m.domain.t2_limit_99 = 12;
+  m.domain.spe_limit_95 = 30, m.domain.spe_limit_99 = 40;
+  for (SubstituteModel& substitute : m.substitutes) {
+    substitute.model = m.model;
+    for (Index f = 0; f < n; ++f) {
+      const Feature& feature = m.features[static_cast<std::size_t>(f)];
+      if (feature.point == substitute.lost || feature.other == substitute.lost)
+        substitute.model.coefficients.row(f).setZero();
+      else
+        substitute.model.coefficients.row(f) *= 1.25;
+    }
+  }
+  return m;
+}

@@ -4,6 +4,7 @@ CORE is host, cortex-m0, cortex-m4 or cortex-m7. The object must not ask for hea
 random walk must give the same bits everywhere. Prints sizes, stack and hashes.
 """
 
+import json
 import os
 import re
 import subprocess
@@ -23,6 +24,8 @@ CORES = {
     "cortex-m4": (["-mcpu=cortex-m4", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"], "mps2-an386"),
     "cortex-m7": (["-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard"], "mps2-an500"),
 }
+TRANSFER = json.load(open(model))["method"] == "transfer"
+COMMON += ["-DWALK_TRANSFER"] if TRANSFER else []
 FORBIDDEN = re.compile(r"malloc|calloc|realloc|free|_Zn[wa]|_Zd[la]|__cxa|_Unwind|__gxx|_ZTI|_ZTS|_ZTV|__dynamic_cast|"
                        r"terminate|_ZSt\d+__throw|abort|_sbrk")
 
@@ -34,7 +37,7 @@ def call(*command, **options):
 for scalar, zero in [("float", ["--zero", "first"]), ("double", [])]:
     for target, suffix in [("cpp", "hpp"), ("c", "h")]:
         call(thermfit, "export", model, "--target", target, "--scalar", scalar, "--name", "walk_" + scalar, "--clamp", 14,
-             "--slew", 0.7, "--hold-timeout", 15, "--domain", "shrink", *zero, "-o", os.path.join(work, "walk_%s.%s" % (scalar, suffix)))
+             "--slew", 0.7, "--hold-timeout", 15, "--domain", "shrink", *zero, *(["--probe"] if TRANSFER else []), "-o", os.path.join(work, "walk_%s.%s" % (scalar, suffix)))
 
 
 def build(core):

@@ -82,7 +82,7 @@ class Hash {
 };
 
 /// Runs `steps` of a compensator with any interface: `subject` has start(), start(offsets), start(offsets, zero),
-/// stop(), datum() and step(readings, periods, heartbeat); after each step `look()` is called.
+/// stop(), datum(), probe(error, measured) and step(readings, periods, heartbeat); after each step `look()` is called.
 template <class Scalar, std::size_t Sensors, std::size_t Errors, class Subject, class Look>
 void run(Subject& subject, std::uint32_t steps, Look look) {
   Random random(2463534242u);
@@ -101,6 +101,9 @@ void run(Subject& subject, std::uint32_t steps, Look look) {
     if (command >= 13 && command < 18) silence = random.below(30);
     const std::uint32_t lateness = random.below(1000);
     const std::uint32_t periods = lateness < 990 ? 1 : lateness < 995 ? 0 : random.below(20);
+    if (command >= 18 && command < 30)
+      subject.probe(command % Errors, static_cast<Scalar>(static_cast<std::int32_t>(random.below(4000)) - 2000) / 100);
+    if (command == 30) subject.probe(0, std::numeric_limits<Scalar>::quiet_NaN());
     if (command == 0) subject.stop();
     if (command > 0 && command < 6) subject.start();
     if (command >= 6 && command < 10) {

@@ -18,4 +18,9 @@ extern "C" void controller_stop() { device.stop(); }
 extern "C" std::uint32_t controller_step(const walk_float::Compensator::Temperatures& readings) {
   return device.step(readings).word;
 }
+#ifdef WALK_TRANSFER
+extern "C" bool controller_probe(std::size_t error, float measured_um) {
+  return device.probe(error, measured_um) == thermfit::ProbeReading::taken;
+}
+#endif
 extern "C" float controller_offset(std::size_t error) { return device.offset_um()[error]; }

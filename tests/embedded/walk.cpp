@@ -14,11 +14,12 @@ void write_text(const char* text);  // stdout of the host, semihosting of the em
   void name##_c_retain(name::Compensator::Retained*);                                              \
   void name##_c_datum();                                                                           \
   void name##_c_stop();                                                                            \
+  void name##_c_probe(std::uint32_t, real);                                                        \
   std::uint32_t name##_c_step(const real*, std::uint32_t periods, std::uint32_t heartbeat, real*); \
   std::uint32_t name##_c_self_test();
 
 #define C_FUNCTIONS(name) \
-  { name##_c_start, name##_c_resume, name##_c_retain, name##_c_datum, name##_c_stop, name##_c_step }
+  { name##_c_start, name##_c_resume, name##_c_retain, name##_c_datum, name##_c_stop, name##_c_probe, name##_c_step }
 
 extern "C" {
 C_EXPORT(walk_float, float)
@@ -35,12 +36,14 @@ struct Functions {
   void (*retain)(typename Device::Retained*);
   void (*datum)();
   void (*stop)();
+  void (*probe)(std::uint32_t, Scalar);
   std::uint32_t (*step)(const Scalar*, std::uint32_t, std::uint32_t, Scalar*);
 };
 
+/// What was retained, with another zero.
 template <class Device>
-typename Device::Retained sealed(const typename Device::Temperatures& zero, std::uint32_t identity) {
-  typename Device::Retained kept;
+typename Device::Retained sealed(typename Device::Retained kept, const typename Device::Temperatures& zero,
+                                 std::uint32_t identity) {
   kept.zero_degC = zero;
   kept.seal(identity);
   return kept;
@@ -53,10 +56,15 @@ struct CppSubject {
   void start() { device.start(); }
   void start(const typename Device::Offsets& offsets) { device.start(offsets); }
   void start(const typename Device::Offsets& offsets, const typename Device::Temperatures& zero) {
-    device.resume(sealed<Device>(zero, identity), offsets);
+    device.resume(sealed<Device>(retained(), zero, identity), offsets, 100);
   }
   void datum() { device.take_datum(); }
   void stop() { device.stop(); }
+  void probe([[maybe_unused]] std::size_t error, [[maybe_unused]] typename Device::Offsets::value_type measured_um) {
+#ifdef WALK_TRANSFER
+    device.probe(error, measured_um);
+#endif
+  }
   void step(const typename Device::Temperatures& readings, std::uint32_t periods, std::uint32_t heartbeat) {
     status = device.step(readings, {periods, heartbeat}).word;
   }
@@ -72,11 +80,12 @@ struct CSubject {
   void start() { functions.start(nullptr); }
   void start(const typename Device::Offsets& offsets) { functions.start(offsets.data()); }
   void start(const typename Device::Offsets& offsets, const typename Device::Temperatures& zero) {
-    const auto kept = sealed<Device>(zero, identity);
+    const auto kept = sealed<Device>(retained(), zero, identity);
     functions.resume(&kept, offsets.data());
   }
   void datum() { functions.datum(); }
   void stop() { functions.stop(); }
+  void probe(std::size_t error, Scalar measured_um) { functions.probe(static_cast<std::uint32_t>(error), measured_um); }
   void step(const typename Device::Temperatures& readings, std::uint32_t periods, std::uint32_t heartbeat) {
     status = functions.step(readings.data(), periods, heartbeat, offset_um.data());
   }

@@ -1,6 +1,7 @@
 /// compensator_answers float|double MODEL [OPTION…]: what the C++ compensator answers to the lines of standard input,
 /// for exports to be compared with. A line is `enable datum heartbeat periods reading…`, answered by `offset… status`;
-/// or something that happens to the power: `power`, `cut SENSOR DEGC` (that zero is torn), `foreign` (another model's).
+/// or something that happens to the power: `power`, `cut SENSOR DEGC` (that zero is torn), `foreign` (another model's),
+/// `off PERIODS` (it was off for so long); or `probe ERROR UM`, a reading of the probe.
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -24,15 +25,24 @@ int answer(const TrainedModel& trained, const CompensationWishes& wishes) {
   std::optional<Device> device;
   device.emplace(model, settings);
   auto kept = device->retained();
+  std::uint32_t off_steps = Device::off_unknown;
   bool awake = false, running = false, datum_before = false;
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string word;
     words >> word;
-    if (word == "power" || word == "cut" || word == "foreign") {
+    if (word == "probe") {
+      std::size_t error = 0;
+      words >> error >> word;
+      device->probe(error, static_cast<Scalar>(std::stod(word)));
+      continue;
+    }
+    if (word == "power" || word == "off" || word == "cut" || word == "foreign") {
       std::size_t sensor = 0;
       double zero_degC = 0;
       if (word == "cut" && words >> sensor >> zero_degC) kept.zero_degC[sensor] = static_cast<Scalar>(zero_degC);
+      off_steps = Device::off_unknown;
+      if (word == "off") words >> off_steps;
       if (word == "foreign") kept.seal(model.identity ^ 1);
       device.emplace(model, settings);
       awake = running = datum_before = false;
@@ -49,7 +59,7 @@ int answer(const TrainedModel& trained, const CompensationWishes& wishes) {
     }
     if (enable && !running) {
       if (awake) device->start();
-      if (!awake) device->resume(kept);
+      if (!awake) device->resume(kept, off_steps);
       awake = true;
     }
     if (!enable && running) device->stop();

@@ -13,6 +13,13 @@ from blark import transform as tree
 from blark.parse import parse_source_code
 
 OPERATORS = {"AND": "and", "OR": "or", "=": "==", "<>": "!="}
+
+
+def quotient(a, b):
+    """Of whole numbers it is whole."""
+    return a // b if type(a) is int and type(b) is int else a / b
+
+
 FUNCTIONS = {"UDINT_TO_LREAL": float, "UDINT_TO_REAL": numpy.float32}
 FUNCTIONS["SQRT"] = lambda x: numpy.sqrt(x) if isinstance(x, numpy.float32) else math.sqrt(x)
 TYPES = {"BOOL": bool, "UDINT": int, "LREAL": float, "REAL": numpy.float32}
@@ -42,7 +49,7 @@ class FunctionBlock:
         start = ["def initialise(self):"] + self.lines
         self.lines = ["def cycle(self):"]
         self.statements(block.body.statements, 1)
-        scope = {"known": known_blocks, "assign": self.assign, "real": lambda text: TYPES[self.real](text)}
+        scope = {"quotient": quotient, "known": known_blocks, "assign": self.assign, "real": lambda text: TYPES[self.real](text)}
         scope.update(FUNCTIONS)
         exec("\n".join(start + self.lines), scope)
 
@@ -82,6 +89,8 @@ class FunctionBlock:
             return "(%s %s)" % ("not" if str(node.op).upper() == "NOT" else str(node.op), self.expression(node.expr))
         if isinstance(node, tree.BinaryOperation):
             operator = str(node.op).upper()
+            if operator == "/":
+                return "quotient(%s, %s)" % (self.expression(node.left), self.expression(node.right))
             kind = "bool" if operator[0] in "=<>" else ""  # numpy has a type of its own for it
             return "%s(%s %s %s)" % (kind, self.expression(node.left), OPERATORS.get(operator, operator),
                                      self.expression(node.right))
@@ -107,6 +116,9 @@ class FunctionBlock:
                 if node.else_clause:
                     out("else:")
                     self.statements(node.else_clause.statements, depth + 1)
+            elif isinstance(node, tree.WhileStatement):
+                out("while %s:" % self.expression(node.expression))
+                self.statements(node.statements, depth + 1)
             elif isinstance(node, tree.CaseStatement):
                 out("case = " + self.expression(node.expression))
                 for i, case in enumerate(node.cases):

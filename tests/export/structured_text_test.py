@@ -1,4 +1,4 @@
-"""structured_text_test.py THERMFIT MODEL ABSOLUTE_MODEL COMPENSATOR_ANSWERS: exported function blocks do what the C++
+"""structured_text_test.py THERMFIT MODEL ABSOLUTE_MODEL TRANSFER_MODEL COMPENSATOR_ANSWERS: exported function blocks do what the C++
 compensator does, over power cycles too, and notice when not."""
 
 import json
@@ -13,7 +13,7 @@ import numpy
 import readings
 import structured_text
 
-thermfit, model, absolute, truth = sys.argv[1:]
+thermfit, model, absolute, transfer, truth = sys.argv[1:]
 numpy.seterr(all="ignore")
 STATES = "off,starting,tracking,substituting,holding,fallback,stopping,no datum".split(",")
 OFF, STARTING, TRACKING, SUBSTITUTING, HOLDING, FALLBACK, STOPPING, NO_DATUM = range(8)
@@ -50,17 +50,29 @@ class Machine:
     def __init__(self, block, scalar=float):
         self.device, self.scalar = block(), scalar
         self.lines, self.answers = [], []
-        self.enable, self.heartbeat = True, 0
+        self.enable, self.heartbeat, self.off = True, 0, {}
 
-    def call(self, row, datum=False, periods=1):
+    def call(self, row, datum=False, periods=1, probed=None):
+        """`probed`: an error, by number, and what a probe reads of it."""
+        probe = {}
+        if probed is not None:
+            self.lines.append("probe %d %r" % probed)
+            name = "XZ"[probed[0]]
+            probe = {"Probe_" + name: self.scalar(probed[1]), "Probe_%s_new" % name: True}
+            other = "ZX"[probed[0]]
+            probe["Probe_%s_new" % other] = False
+        elif hasattr(self.device, "probe_x_new"):
+            probe = {"Probe_X_new": False, "Probe_Z_new": False}
         self.lines.append("%d %d %d %d %s" % (self.enable, datum, self.heartbeat, periods, " ".join(map(repr, row))))
-        self.device(Enable=self.enable, Datum=datum, Heartbeat=self.heartbeat, Periods=periods,
+        self.device(Enable=self.enable, Datum=datum, Heartbeat=self.heartbeat, Periods=periods, **probe, **self.off,
                     **{"Temperature_" + name: self.scalar(value) for name, value in zip(readings.SENSORS, row)})
         self.answers.append([float(self.device.offset_x_um), float(self.device.offset_z_um), self.device.status])
 
-    def power_cycle(self, torn=None, foreign=False):
+    def power_cycle(self, torn=None, foreign=False, off=None):
+        if hasattr(self.device, "off_periods"):
+            self.off = {"Off_periods": 4294967295 if off is None else off}
         self.device = structured_text.after_power_cycle(self.device)
-        self.lines.append("foreign" if foreign else "cut %d %r" % torn if torn else "power")
+        self.lines.append("foreign" if foreign else "cut %d %r" % torn if torn else "power" if off is None else "off %d" % off)
         if torn:
             self.device.set(self.device, "s%d_zero" % (torn[0] + 1), self.scalar(torn[1]))
         if foreign:
@@ -74,7 +86,7 @@ class Machine:
         assert len(expected) == len(self.answers)
         differ = [k for k, pair in enumerate(zip(self.answers, expected)) if pair[0] != pair[1]]
         if differ:
-            calls = [line for line in self.lines if line[0] in "01"]
+            calls = [line for line in self.lines if line[0] in "01" and line[:3] != "off"]
             print("call", differ[0], calls[differ[0]], self.answers[differ[0]], "C++:", expected[differ[0]])
         return len(differ)
 
@@ -184,24 +196,30 @@ class Cases:
 def random_course(machine, rows, seed):
     """Faulty readings, and now and then a datum, a switch, a power cycle, a call that is late or too many."""
     source = random.Random(seed)
-    datum = False
-    beats = False
+    datum, beats, probed = False, False, None
     for row in rows:
         luck = source.random()
         if luck < 0.003:
-            machine.power_cycle(*source.choice([[], [], [], [(0, 25.0)], [None, True]]))
+            machine.power_cycle(*source.choice([[], [], [], [(0, 25.0)], [None, True]]) if not machine.off else
+                                source.choice([[], [(0, 25.0)], [None, False, 0], [None, False, 40], [None, False, 20000]]))
             machine.heartbeat, beats = 0, source.random() < 0.5
         elif luck < 0.006 or not machine.enable and luck < 0.1:
             machine.enable = not machine.enable
         datum = source.random() < (0.5 if datum else 0.01)
         machine.heartbeat += 1 if beats and source.random() < 0.7 else 0
-        machine.call(row, datum, source.choice([1] * 60 + [0, 0, 2, 7, 100]))
+        probed, read_before = None, probed
+        if hasattr(machine.device, "probe_x_new") and read_before is None and source.random() < 0.05:
+            wild = source.choice([1, 1, 1, 5, 1e300])
+            probed = (source.randrange(2), source.uniform(-3, 3) * wild - float(machine.device.offset_z_um))
+            if source.random() < 0.05:
+                probed = (probed[0], math.nan)
+        machine.call(row, datum, source.choice([1] * 60 + [0, 0, 2, 7, 100]), probed)
 
 
 def check(title, model, *options, scalar=float, cases=False):
     compensator, tester = export(model, *options)
     numbers = ["--scalar", "float"] if scalar is numpy.float32 else []
-    course = [o for o in options if o not in numbers]
+    course = [o for o in options if o not in numbers + ["--probe"]]
     blocks = structured_text.load(compensator)  # blark takes time: each text is read once
     blocks = structured_text.load(tester, blocks)
     failed, cycles = self_test(blocks, zero_left_behind=cases)
@@ -214,12 +232,14 @@ def check(title, model, *options, scalar=float, cases=False):
         print("%s: %d of these %d answers differ from the C++ compensator's" % (title, wrong, len(machine.answers)))
         assert wrong == 0
     machine = Machine(blocks["thermal"], scalar)
+    if hasattr(machine.device, "off_periods"):
+        machine.off = {"Off_periods": 4294967295}
     random_course(machine, readings.readings(4000, seed=7), seed=3)
     wrong = machine.wrong(model, *course)
     met = {a[-1] % 16 for a in machine.answers}
     faults = {a[-1] >> 16 & 15 for a in machine.answers}
     print("%s: %d of %d answers of a random course differ; states %s, faults %s, %d power cycles" %
-          (title, wrong, len(machine.answers), sorted(met), sorted(faults), len(machine.lines) - len(machine.answers)))
+          (title, wrong, len(machine.answers), sorted(met), sorted(faults), sum(line[:3] in ("pow", "off", "cut", "for") for line in machine.lines)))
     assert wrong == 0 and len(met) > 5
     return compensator, blocks
 
@@ -262,4 +282,7 @@ print("500 rows against thermfit predict: largest difference %.1e um" % worst)
 assert worst < 1e-12
 
 check("absolute temperatures", absolute, "--domain", "shrink", "--sign", "error", "--hold-timeout", "40")
+derived = ["--domain", "shrink", "--hold-timeout", "40", "--probe", "--probe-age", "3"]
+check("derived channels and a probe", transfer, *derived)
+check("the same in float", transfer, "--scalar", "float", *derived, scalar=numpy.float32)
 check("float", model, "--scalar", "float", *options, scalar=numpy.float32)

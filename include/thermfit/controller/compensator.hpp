@@ -2,6 +2,7 @@
 
 #include "thermfit/controller/compensator_settings.hpp"
 #include "thermfit/controller/controller_model.hpp"
+#include "thermfit/controller/session.hpp"
 #include "thermfit/controller/state_machine.hpp"
 
 namespace thermfit {
@@ -24,22 +25,31 @@ struct CompensatorCall {
 ///
 /// A caller runs `start()` once and `step()` with the newest readings (degC, absolute, in the model's order) at a
 /// fixed period; a reading that did not arrive is handed over as NaN.
-template <class Scalar, int Sensors, int Errors, int Components>
+///
+/// A model on derived channels (the method transfer) has `Features` of them and `Lags`; session.hpp is what it
+/// remembers besides the zero. With `Probes` (as many as errors) probe() takes measured errors now and then. A model
+/// without any of it costs no byte and no cycle for it.
+template <class Scalar, int Sensors, int Errors, int Components, int Features = none_or_dynamic(Sensors),
+          int Lags = none_or_dynamic(Sensors), int Probes = none_or_dynamic(Sensors)>
 class Compensator {
  public:
   static_assert(Sensors != 0 && Errors != 0, "a model has sensors and errors");
-  using Model = ControllerModel<Scalar, Sensors, Errors, Components>;  ///< the model it runs
-  using Settings = CompensatorSettings<Scalar, Sensors, Errors>;       ///< how it behaves
-  using Temperatures = Row<Scalar, Sensors>;                           ///< one reading a sensor, degC
-  using Offsets = Row<Scalar, Errors>;                                 ///< one offset an error, um
-  using Retained = RetainedDatum<Scalar, Sensors>;                     ///< a zero to keep over a power cycle
+  static_assert(Probes == 0 || Probes == Errors, "a probe reads every error, or there is none");
+  using Model = ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags>;     ///< the model it runs
+  using Settings = CompensatorSettings<Scalar, Sensors, Errors, Features, Lags, Probes>;  ///< how it behaves
+  using Temperatures = Row<Scalar, Sensors>;                        ///< one reading a sensor, degC
+  using Offsets = Row<Scalar, Errors>;                              ///< one offset an error, um
+  using Retained = RetainedDatum<Scalar, Sensors, Features, Lags>;  ///< a zero to keep over a power cycle
+  static constexpr std::uint32_t off_unknown = 0xffffffffu;         ///< how long the power was off is not known
 
   /// Off, offset 0. Faulty settings show in status() and are never started.
   Compensator(const Model& model, const Settings& settings) noexcept : model_(model), settings_(settings) {
     detail::set_size(offset_um_, model.errors());
     detail::set_size(demand_um_, model.errors());
-    detail::set_size(values_, model.sensors());
+    detail::set_size(values_, model.inputs());
     datum_.reset(model.sensors());
+    session_.reset(model);
+    probe_.reset(model.errors());
     reset();
     if (!settings_fit()) status_.word = CompensatorStatus::bad_settings_bit;
   }
@@ -67,16 +77,17 @@ class Compensator {
     return true;
   }
 
-  /// Starts relative to the zero of before a power cycle; as without one when `retained` is none, torn or another
-  /// model's: status().zero_source() tells.
-  bool resume(const Retained& retained) noexcept {
-    datum_.restore(retained, model_.identity);
+  /// Starts relative to the zero of before a power cycle, `off_steps` periods after the last step; as without one when
+  /// `retained` is none, torn or another model's: status().zero_source() tells. A model with lags cannot tell where
+  /// they are when it is not known how long the power was off: then it takes no zero either.
+  bool resume(const Retained& retained, std::uint32_t off_steps = off_unknown) noexcept {
+    restore(retained, off_steps);
     return start();
   }
 
   /// The same where another source already applies `offset_um`.
-  bool resume(const Retained& retained, const Offsets& offset_um) noexcept {
-    datum_.restore(retained, model_.identity);
+  bool resume(const Retained& retained, const Offsets& offset_um, std::uint32_t off_steps = off_unknown) noexcept {
+    restore(retained, off_steps);
     return start(offset_um);
   }
 
@@ -98,15 +109,22 @@ class Compensator {
   /// One cycle: `call.periods` periods after the one before.
   CompensatorStatus step(const Temperatures& temperatures_degC, const CompensatorCall& call = {}) noexcept {
     if (state_ == CompensatorState::off) {
+      session_.sleep(call.periods);
       status_.word = settings_fit() ? 0 : CompensatorStatus::bad_settings_bit;
       return status_;
     }
     if (call.periods == 0) return status_;
     status_.word = 0;
     guard_.check(temperatures_degC, settings_.sensors, settings_.patience, call.periods, heartbeat_stopped(call));
+    session_.look(model_, guard_, settings_.features, call.periods);
     trust_who_agrees();
-    datum_.collect(guard_, settings_.sensors, settings_.zero, model_.has_substitute, call.periods,
-                   settings_.hold_steps);
+    session_.settle(model_, guard_, settings_.zero.samples);
+    if (datum_.collect(guard_, settings_.sensors, settings_.zero, model_.has_substitute, call.periods,
+                       settings_.hold_steps)) {
+      session_.take_zero(model_, datum_);
+      probe_.drop();
+    }
+    probe_.age(call.periods);
     CompensatorEvent event = judge();
     held_steps_ = event == CompensatorEvent::no_demand ? counted(held_steps_, call.periods) : 0;
     if (held_steps_ > settings_.hold_steps) event = CompensatorEvent::hold_expired;
@@ -114,6 +132,19 @@ class Compensator {
     if (move_offset(call.periods)) raise(CompensatorEvent::at_zero);
     tell();
     return status_;
+  }
+
+  /// A probe has measured that error, um, as the model counts it: the whole thermal error since the zero, which is what
+  /// is left of it less the offset applied (plus it, where the sign is `error`). What it differs by from the demand of
+  /// the last step is added to the demand from the next step on, until the next reading or until it is too old; the
+  /// offset goes there at the slew limit. Readings that are no number, too large, or far off the last one without a
+  /// second that agrees are refused, as told; a new zero and a start drop what is held.
+  template <int Readings = Probes>
+  ProbeReading probe(std::size_t error, Scalar measured_um) noexcept {
+    static_assert(Readings != 0, "the compensator was made without a probe");
+    if (state_ != CompensatorState::tracking && state_ != CompensatorState::substituting)
+      return ProbeReading::no_demand;
+    return probe_.take(error, measured_um, demand_um_[error], settings_.probe);
   }
 
   /// The offset of each error after the last step, um; finite and within ± clamp.
@@ -125,13 +156,33 @@ class Compensator {
 
   /// The zero, to be stored over a power cycle whenever it changes; says none where there is none. Only dynamic rows
   /// allocate.
-  Retained retained() const { return datum_.retained(model_.identity); }
+  ///
+  /// A model with lags wants it stored now and then besides: where they were when the power went is what counts.
+  Retained retained() const {
+    Retained kept;
+    session_.retain(kept.session());
+    datum_.retain(kept, model_.identity);
+    return kept;
+  }
 
  private:
   bool settings_fit() const noexcept { return broken_rule(settings_) == nullptr; }
 
+  void restore(const Retained& retained, std::uint32_t off_steps) noexcept {
+    session_.reset(model_);
+    if (!datum_.restore(retained, model_.identity)) return;
+    if (has_lags() && off_steps == off_unknown) return datum_.forget();
+    session_.restore(retained.session(), off_steps == off_unknown ? 0 : off_steps);
+  }
+
+  bool has_lags() const noexcept {
+    if constexpr (Lags != 0) return model_.features.lag_sensor.size() > 0;
+    return false;
+  }
+
   void reset() noexcept {
     guard_.reset(model_.sensors());
+    probe_.drop();
     domain_.reset(model_.domain);
     held_steps_ = silent_steps_ = 0;
     has_heartbeat_ = false;
@@ -163,7 +214,9 @@ class Compensator {
   /// The readings, relative to the zero or absolute: the equation takes them as the demand is, the training domain as
   /// the model was fitted.
   void take_values(bool from_zero) noexcept {
-    for (std::size_t i = 0; i < values_.size(); ++i)
+    if constexpr (Features != 0)
+      if (model_.features.channels.size() > 0) return session_.take_values(model_, guard_, datum_, values_);
+    for (std::size_t i = 0; i < model_.sensors(); ++i)
       values_[i] = guard_.reading_degC(i) - (from_zero ? datum_.zero_degC()[i] : Scalar(0));
   }
 
@@ -176,13 +229,13 @@ class Compensator {
   void trust_who_agrees() noexcept {
     std::uint32_t away = 0;
     bool all_read = true;
-    for (std::size_t i = 0; i < values_.size(); ++i) {
+    for (std::size_t i = 0; i < model_.sensors(); ++i) {
       away += guard_.fault(i) == SensorFault::none ? 0 : 1;
       all_read = all_read && (guard_.fault(i) == SensorFault::none || guard_.returning(i));
     }
     if (away == 0) return;
     const bool together = all_read && agree_together();
-    for (std::size_t i = 0; i < values_.size(); ++i) {
+    for (std::size_t i = 0; i < model_.sensors(); ++i) {
       if (!guard_.returning(i)) continue;
       const bool compared = away == 1 && has_reference(i) && model_.has_substitute[i] && model_.agreement_um[i][0] > 0;
       if (compared ? agrees_with_substitute(i) : together || near_where_it_was(i)) guard_.trust(i);
@@ -201,7 +254,7 @@ class Compensator {
   /// Several that come back at once agree when the sample as a whole is like those of training.
   bool agree_together() noexcept {
     if (settings_.domain_policy == DomainPolicy::ignore) return false;
-    for (std::size_t i = 0; i < values_.size(); ++i)
+    for (std::size_t i = 0; i < model_.sensors(); ++i)
       if (!has_reference(i)) return false;
     take_values(model_.rise);
     return domain_.share_inside(model_.domain, values_) >= 1;
@@ -235,7 +288,7 @@ class Compensator {
   std::uint32_t count_unused() noexcept {
     std::uint32_t unused = 0;
     SensorFault first_fault = SensorFault::none;
-    for (std::size_t i = 0; i < values_.size(); ++i) {
+    for (std::size_t i = 0; i < model_.sensors(); ++i) {
       SensorFault fault = guard_.fault(i);
       if (fault == SensorFault::none && datum_.known() && !has_reference(i)) fault = SensorFault::no_reference;
       if (fault == SensorFault::none) continue;
@@ -260,7 +313,7 @@ class Compensator {
   bool apply_domain(bool whole) noexcept {
     if (settings_.domain_policy == DomainPolicy::ignore) return true;
     take_values(model_.rise);
-    if (!whole) domain_.fill_in(model_.domain, values_, first_unused_);
+    if (!whole) fill_in(first_unused_);
     const Scalar share = domain_.share_inside(model_.domain, values_);
     if (share >= 1) return true;
     status_.word |= CompensatorStatus::outside_domain_bit;
@@ -272,9 +325,19 @@ class Compensator {
     return settings_.domain_policy != DomainPolicy::hold;
   }
 
+  /// What a sensor's inputs should be by the others.
+  void fill_in(std::size_t sensor) noexcept {
+    if constexpr (Features != 0)
+      if (model_.features.channels.size() > 0)
+        return domain_.fill_in_all(model_.domain, values_,
+                                   [&](std::size_t f) { return model_.features.channels[f].of(sensor); });
+    domain_.fill_in(model_.domain, values_, sensor);
+  }
+
   /// What drops out of the prediction where the offset is 0 at the zero.
   Scalar left_out(std::size_t error) const noexcept {
-    if (!model_.rise) return datum_.known() ? model_.equation.predict(error, datum_.zero_degC()) : Scalar(0);
+    if constexpr (Features <= 0)
+      if (!model_.rise) return datum_.known() ? model_.equation.predict(error, datum_.zero_degC()) : Scalar(0);
     return datum_.through_zero() ? model_.equation.intercept_um[error] : Scalar(0);
   }
 
@@ -286,7 +349,10 @@ class Compensator {
       const OutputLimits<Scalar>& limits = settings_.outputs[j];
       Scalar target = kind == OffsetTarget::rest ? offset_um_[j] : Scalar(0);
       if (kind == OffsetTarget::demand) {
-        const Scalar wanted = settings_.sign == OutputSign::correction ? -demand_um_[j] : demand_um_[j];
+        bool probed = false;
+        const Scalar demand = probe_.corrected(j, demand_um_[j], settings_.probe, probed);
+        const Scalar wanted = settings_.sign == OutputSign::correction ? -demand : demand;
+        if (probed) status_.word |= CompensatorStatus::probed_bit;
         target = clamped(wanted, limits.clamp_um);
         if (!(target == wanted)) status_.word |= CompensatorStatus::clamped_bit;
       }
@@ -301,14 +367,16 @@ class Compensator {
   const Settings& settings_;
   SensorGuard<Scalar, Sensors> guard_;
   Datum<Scalar, Sensors> datum_;
-  DomainGuard<Scalar, Sensors, Components> domain_;
-  Temperatures values_{};
+  DomainGuard<Scalar, Model::Inputs, Components> domain_;
+  Row<Scalar, Model::Inputs> values_{};
   Offsets demand_um_{}, offset_um_{};
   CompensatorStatus status_;
   std::size_t first_unused_ = 0;
   std::uint32_t held_steps_ = 0, silent_steps_ = 0, heartbeat_ = 0;
   bool has_heartbeat_ = false;
   CompensatorState state_ = CompensatorState::off;
+  Session<Scalar, Sensors, Features, Lags> session_;
+  ProbeCorrections<Scalar, Probes> probe_;
 };
 
 }  // namespace thermfit

@@ -2,6 +2,7 @@
 
 #include "thermfit/controller/datum.hpp"
 #include "thermfit/controller/domain_guard.hpp"
+#include "thermfit/controller/probe_corrections.hpp"
 #include "thermfit/controller/slew_limit.hpp"
 
 namespace thermfit {
@@ -14,12 +15,15 @@ enum class OutputSign : std::int8_t {
 
 /// How a compensator behaves. Everything is per step, since a controller counts cycles; settings_for.hpp makes these
 /// from seconds and micrometres per second.
-template <class Scalar, int Sensors, int Errors>
+template <class Scalar, int Sensors, int Errors, int Features = none_or_dynamic(Sensors),
+          int Lags = none_or_dynamic(Sensors), int Probes = none_or_dynamic(Sensors)>
 struct CompensatorSettings {
   Row<SensorLimits<Scalar>, Sensors> sensors{};  ///< range, rate and stuck check of each sensor
   GuardPatience<Scalar> patience{};              ///< when a sensor is lost and when it is trusted again
   std::uint32_t hold_steps = 600;  ///< steps an offset may be held before it ramps to zero; 0: ramps at once
   DomainPolicy domain_policy = DomainPolicy::warn;  ///< what to do with a sample unlike those of training
+  FeatureRule<Scalar, Features, Lags> features{};   ///< how lags go on; empty without
+  Row<ProbeLimits<Scalar>, Probes> probe{};         ///< of each error's probe, in um and steps; empty without
   Row<OutputLimits<Scalar>, Errors> outputs{};      ///< clamp and slew of each axis
   OutputSign sign = OutputSign::correction;         ///< what the offset means to the control
   ZeroRule zero{};                                  ///< where the zero comes from
@@ -27,8 +31,9 @@ struct CompensatorSettings {
 };
 
 /// Text of the first rule that `settings` break, or nullptr. A compensator refuses to start with broken settings.
-template <class Scalar, int Sensors, int Errors>
-constexpr const char* broken_rule(const CompensatorSettings<Scalar, Sensors, Errors>& settings) noexcept {
+template <class Scalar, int Sensors, int Errors, int Features, int Lags, int Probes>
+constexpr const char* broken_rule(
+    const CompensatorSettings<Scalar, Sensors, Errors, Features, Lags, Probes>& settings) noexcept {
   constexpr Scalar most = Scalar(1e6);  // so that no product in the guard overflows, not even in float
   for (const SensorLimits<Scalar>& sensor : settings.sensors) {
     if (!within(sensor.lowest_degC, -most, most) || !within(sensor.highest_degC, -most, most))
@@ -52,6 +57,14 @@ constexpr const char* broken_rule(const CompensatorSettings<Scalar, Sensors, Err
     if (!(output.clamp_um - output.slew_um_per_step < output.clamp_um))
       return "outputs: slew_um_per_step is not lost in the rounding of clamp_um";
   }
+  if constexpr (Features != 0) {
+    for (const Scalar share : settings.features.lag_share)
+      if (!(share > 0 && share <= 1)) return "features: lag_share is above 0 and at most 1";
+    if (settings.features.session_steps < 1) return "features: session_steps is at least 1";
+  }
+  for (const ProbeLimits<Scalar>& probe : settings.probe)
+    if (!(probe.largest_um >= 0 && probe.jump_um >= 0 && probe.longest_s >= 0))
+      return "probe: largest_um, jump_um and longest_s are 0 or more";
   if (settings.domain_policy > DomainPolicy::hold) return "domain_policy is one of ignore, warn, shrink, hold";
   if (settings.sign != OutputSign::error && settings.sign != OutputSign::correction)
     return "sign is error or correction";

@@ -28,7 +28,6 @@ template <class Scalar, int Sensors>
 class Datum {
  public:
   using Zero = Row<Scalar, Sensors>;                  ///< one reading a sensor, degC
-  using Retained = RetainedDatum<Scalar, Sensors>;    ///< what survives a power cycle
   using Limits = Row<SensorLimits<Scalar>, Sensors>;  ///< what first readings look like, and how well samples agree
   using Guard = SensorGuard<Scalar, Sensors>;         ///< whose readings are taken
 
@@ -52,6 +51,7 @@ class Datum {
   }
 
   /// The zero of before a power cycle; none when `retained` is torn, or another model's. Returns whether there is one.
+  template <class Retained>
   bool restore(const Retained& retained, std::uint32_t model) noexcept {
     forget();
     if (!retained.valid(model)) return false;
@@ -64,15 +64,15 @@ class Datum {
     return true;
   }
 
-  /// What to keep over a power cycle, for the model of that identity; says "none" where there is no zero.
-  Retained retained(std::uint32_t model) const {
-    Retained kept;
+  /// What to keep over a power cycle, for the model of that identity, into what is kept of the session; says "none"
+  /// where there is no zero.
+  template <class Retained>
+  void retain(Retained& kept, std::uint32_t model) const {
     kept.zero_degC = zero_degC_;
     for (std::size_t i = 0; i < known_.size(); ++i)
       if (!known_[i]) kept.zero_degC[i] = std::numeric_limits<Scalar>::quiet_NaN();
     kept.through_zero = through_zero_ ? 1 : 0;
     if (source_ != ZeroSource::none) kept.seal(model);
-    return kept;
   }
 
   /// Asks for a zero from the samples that follow; until it is there, the old one counts.
@@ -90,10 +90,10 @@ class Datum {
 
   /// Offers one more sample to the zero that was asked for. A sensor that is lost is waited for as long as
   /// `patience_steps`, then left out where `substitutes` has one for it and no other is missing. One that has returned
-  /// need not agree with the others: with a new zero it begins anew, and is trusted.
-  void collect(Guard& guard, const Limits& limits, const ZeroRule& rule, const Row<bool, Sensors>& substitutes,
+  /// need not agree with the others: with a new zero it begins anew, and is trusted. Returns whether it was taken.
+  bool collect(Guard& guard, const Limits& limits, const ZeroRule& rule, const Row<bool, Sensors>& substitutes,
                std::uint32_t steps, std::uint32_t patience_steps) noexcept {
-    if (wanted_ == ZeroSource::none) return;
+    if (wanted_ == ZeroSource::none) return false;
     waited_steps_ = counted(waited_steps_, steps);
     std::uint32_t missing = 0;
     bool same = true;
@@ -103,20 +103,21 @@ class Datum {
       const bool spared = guard.lost(i) && substitutes[i] && waited_steps_ > patience_steps;
       if (!good && !spared) {
         taken_ = 0;
-        return;
+        return false;
       }
       missing += good ? 0 : 1;
       same = same && counted_[i] == good;
       counted_[i] = good;
     }
     if (missing > 1 || !same) taken_ = 0;
-    if (missing > 1) return;
+    if (missing > 1) return false;
     for (std::size_t i = 0; i < known_.size(); ++i) window_[i][taken_ % rule.samples] = guard.reading_degC(i);
     taken_ = taken_ + 1 < 2 * rule.samples ? taken_ + 1 : rule.samples;
-    if (taken_ < rule.samples || !agreed(limits, rule.samples)) return;
+    if (taken_ < rule.samples || !agreed(limits, rule.samples)) return false;
     take(rule);
     for (std::size_t i = 0; i < known_.size(); ++i)
       if (counted_[i] && guard.returning(i)) guard.trust(i);
+    return true;
   }
 
   /// Whether there is a zero.

@@ -16,17 +16,17 @@ enum class DomainPolicy : std::uint8_t {
 };
 
 /// Tells how far out a sample lies: T2 and SPE as in training_domain.hpp.
-template <class Scalar, int Sensors, int Components>
+template <class Scalar, int Inputs, int Components>
 class DomainGuard {
  public:
-  using Domain = ControllerDomain<Scalar, Sensors, Components>;  ///< the training domain it looks at
+  using Domain = ControllerDomain<Scalar, Inputs, Components>;  ///< the training domain it looks at
 
   /// Makes room for the scores of `domain`. Only dynamic rows allocate.
   void reset(const Domain& domain) { detail::set_size(scores_, domain.inverse_score_variance.size()); }
 
   /// Puts into `temperatures` what the domain expects `sensor` to be, from the others: the value that leaves it no
   /// residual of its own, x = sum_a p_a sum_(k != i) r_ka z_k / (1 - sum_a p_a r_ia) in standardised temperatures.
-  void fill_in(const Domain& domain, Row<Scalar, Sensors>& temperatures, std::size_t sensor) const noexcept {
+  void fill_in(const Domain& domain, Row<Scalar, Inputs>& temperatures, std::size_t sensor) const noexcept {
     Scalar expected = 0, own = 0;
     for (std::size_t a = 0; a < scores_.size(); ++a) {
       Scalar score = 0;
@@ -40,9 +40,41 @@ class DomainGuard {
     temperatures[sensor] = domain.mean[sensor] + standardised / domain.inverse_scale[sensor];
   }
 
+  /// The same for all inputs that are `missing`, which one sensor's features are: those that leave none of them a
+  /// residual, z = (1 - P R')^-1 P (scores of the others), by Gauss and Seidel's sweeps, which converge as each lowers
+  /// SPE. An input that the others do not tell stays at the mean.
+  template <class Missing>
+  void fill_in_all(const Domain& domain, Row<Scalar, Inputs>& inputs, Missing missing) noexcept {
+    const std::size_t n = domain.mean.size();
+    for (std::size_t a = 0; a < scores_.size(); ++a) {
+      scores_[a] = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        if (!missing(i))
+          scores_[a] += domain.rotations[a][i] * ((inputs[i] - domain.mean[i]) * domain.inverse_scale[i]);
+    }
+    for (std::size_t f = 0; f < n; ++f)
+      if (missing(f)) inputs[f] = 0;
+    for (int sweep = 0; sweep < fill_in_sweeps; ++sweep)
+      for (std::size_t f = 0; f < n; ++f) {
+        if (!missing(f)) continue;
+        Scalar expected = 0, own = 0;
+        for (std::size_t a = 0; a < scores_.size(); ++a) {
+          expected += domain.loadings[a][f] * scores_[a];
+          own += domain.loadings[a][f] * domain.rotations[a][f];
+        }
+        for (std::size_t g = 0; g < n; ++g)
+          if (g != f && missing(g)) expected += shared(domain, f, g) * inputs[g];
+        inputs[f] = own < Scalar(0.99) ? expected / (1 - own) : Scalar(0);
+      }
+    for (std::size_t f = 0; f < n; ++f)
+      if (missing(f)) inputs[f] = domain.mean[f] + inputs[f] / domain.inverse_scale[f];
+  }
+
+  static constexpr int fill_in_sweeps = 8;  ///< of the features of a lost sensor
+
   /// 1 inside the domain; else the factor in 0…1 by which the way from the mean to `temperatures` must shrink for the
   /// sample to lie on the edge: sqrt(limit / distance), the smaller of T2's and SPE's. 0 when that is no number.
-  Scalar share_inside(const Domain& domain, const Row<Scalar, Sensors>& temperatures) noexcept {
+  Scalar share_inside(const Domain& domain, const Row<Scalar, Inputs>& temperatures) noexcept {
     Scalar t2 = 0, spe = 0;
     for (std::size_t a = 0; a < scores_.size(); ++a) {
       Scalar score = 0;
@@ -65,6 +97,13 @@ class DomainGuard {
   }
 
  private:
+  /// How much of input g the components give to input f.
+  static Scalar shared(const Domain& domain, std::size_t f, std::size_t g) noexcept {
+    Scalar sum = 0;
+    for (std::size_t a = 0; a < domain.rotations.size(); ++a) sum += domain.loadings[a][f] * domain.rotations[a][g];
+    return sum;
+  }
+
   Row<Scalar, Components> scores_{};
 };
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "thermfit/controller/arithmetic.hpp"
 #include "thermfit/controller/controller_model.hpp"
@@ -49,7 +52,45 @@ void fill_columns(Row<Row<Scalar, Size>, Rows>& rows, const Matrix& columns, con
     fill<Scalar, Size>(rows[static_cast<std::size_t>(j)], columns.col(j), what);
 }
 
-/// A number for each model: FNV-1a, 32 bits, over names, reference and coefficients; never 0.
+/// The lags of a model: point and time constant in minutes, in the order of its features, each once.
+inline std::vector<std::pair<Index, double>> lags_of(const TrainedModel& trained) {
+  std::vector<std::pair<Index, double>> lags;
+  for (const Feature& feature : trained.features) {
+    const std::pair<Index, double> lag{feature.point, feature.lag_min};
+    if (feature.kind == FeatureKind::lag && std::find(lags.begin(), lags.end(), lag) == lags.end()) lags.push_back(lag);
+  }
+  return lags;
+}
+
+/// Whether a feature is made of that point.
+inline bool is_of(const Feature& feature, Index point) {
+  return feature.point == point || (feature.kind == FeatureKind::difference && feature.other == point);
+}
+
+/// Features and lags, checked against the points; the climates of training.
+template <class Scalar, int Features, int Lags>
+void fill_features(ControllerFeatures<Scalar, Features, Lags>& features, const TrainedModel& trained) {
+  const Index sensors = static_cast<Index>(trained.temperatures.size());
+  const auto lags = lags_of(trained);
+  fit_size<ControllerFeature, Features>(features.channels, static_cast<Index>(trained.features.size()), "features");
+  fit_size<std::uint8_t, Lags>(features.lag_sensor, static_cast<Index>(lags.size()), "lags");
+  for (std::size_t f = 0; f < trained.features.size(); ++f) {
+    const Feature& from = trained.features[f];
+    const bool difference = from.kind == FeatureKind::difference;
+    if (from.point < 0 || from.point >= sensors || (difference && (from.other < 0 || from.other >= sensors)))
+      throw Error("controller model", "a feature of a point that the model has not", "0 to sensors - 1");
+    const auto lag = std::find(lags.begin(), lags.end(), std::pair<Index, double>{from.point, from.lag_min});
+    features.channels[f] = {static_cast<ControllerFeatureKind>(from.kind), static_cast<std::uint8_t>(from.point),
+                            static_cast<std::uint8_t>(difference ? from.other : 0),
+                            static_cast<std::uint16_t>(from.kind == FeatureKind::lag ? lag - lags.begin() : 0)};
+  }
+  for (std::size_t k = 0; k < lags.size(); ++k) features.lag_sensor[k] = static_cast<std::uint8_t>(lags[k].first);
+  features.climate_lowest_degC = narrowed<Scalar>(trained.climate.lowest, "climate");
+  features.climate_highest_degC = narrowed<Scalar>(trained.climate.highest, "climate");
+  features.climate_mean_degC = narrowed<Scalar>(trained.climate.mean, "climate");
+}
+
+/// A number for each model: FNV-1a, 32 bits, over names, reference, features and coefficients; never 0.
 inline std::uint32_t identity_of(const TrainedModel& trained) {
   std::uint32_t result = fnv1a_begin;
   const auto add = [&](const void* bytes, std::size_t size) { result = fnv1a(result, bytes, size); };
@@ -59,6 +100,11 @@ inline std::uint32_t identity_of(const TrainedModel& trained) {
   add(trained.model.intercept.data(), static_cast<std::size_t>(errors) * sizeof(double));
   const bool rise = trained.reference == TemperatureReference::rise;
   add(rise ? "rise" : "absolute", 4);
+  for (const Feature& feature : trained.features) {
+    const double what[] = {static_cast<double>(feature.kind), static_cast<double>(feature.point),
+                           static_cast<double>(feature.other), feature.lag_min};
+    add(what, sizeof what);
+  }
   return result == 0 ? 1 : result;
 }
 
@@ -66,24 +112,36 @@ inline std::uint32_t identity_of(const TrainedModel& trained) {
 
 /// The fixed-size (or, on the host, dynamic) controller model that computes what `trained` predicts.
 /// Throws Error when a size differs from the type's, or a value cannot be held; nothing is cut or padded. Components
-/// are those of the training domain. Sensors above 254 have no place in the status word and are refused.
-template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size, int Components = dynamic_size>
-ControllerModel<Scalar, Sensors, Errors, Components> narrow_model(const TrainedModel& trained,
-                                                                  DomainLimit limit = DomainLimit::percent_99) {
-  using Model = ControllerModel<Scalar, Sensors, Errors, Components>;
+/// are those of the training domain. A type without `Features` takes no model of the method transfer. Sensors above 254
+/// have no place in the status word and are refused.
+template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size, int Components = dynamic_size,
+          int Features = none_or_dynamic(Sensors), int Lags = none_or_dynamic(Sensors)>
+ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_model(
+    const TrainedModel& trained, DomainLimit limit = DomainLimit::percent_99) {
+  using Model = ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags>;
+  constexpr int Inputs = Model::Inputs;
   Model model;
-  require_plain(trained, "narrow_model");
-  const Index sensors = trained.model.sensors();
+  const Index inputs = trained.model.sensors();
+  const Index sensors = trained.features.empty() ? inputs : static_cast<Index>(trained.temperatures.size());
+  if (inputs != (trained.features.empty() ? sensors : trained.inputs()))
+    throw Error("controller model", std::to_string(inputs) + " coefficients", std::to_string(trained.inputs()));
+  if (!trained.features.empty() && trained.reference != TemperatureReference::rise)
+    throw Error("controller model", "features of absolute temperatures", "of rises");
+  if constexpr (Features == 0) {
+    require_plain(trained, "controller model");
+  } else {
+    detail::fill_features<Scalar, Features, Lags>(model.features, trained);
+  }
   if (sensors < 1 || sensors > 254)
     throw Error("controller model", std::to_string(sensors) + " sensors", "1 to 254", "choose fewer points");
   const auto fill_equation = [](typename Model::Equation& equation, const LinearModel<>& from) {
-    detail::fill_columns<Scalar, Errors, Sensors>(equation.coefficients, from.coefficients, "errors", "sensors");
+    detail::fill_columns<Scalar, Errors, Inputs>(equation.coefficients, from.coefficients, "errors", "inputs");
     detail::fill<Scalar, Errors>(equation.intercept_um, from.intercept, "errors");
   };
   model.rise = trained.reference == TemperatureReference::rise;
   fill_equation(model.equation, trained.model);
 
-  const LinearModel<> nothing{Matrix::Zero(sensors, trained.model.errors()), Vector::Zero(trained.model.errors())};
+  const LinearModel<> nothing{Matrix::Zero(inputs, trained.model.errors()), Vector::Zero(trained.model.errors())};
   detail::fit_size<typename Model::Equation, Sensors>(model.substitutes, sensors, "sensors");
   detail::fit_size<bool, Sensors>(model.has_substitute, sensors, "sensors");
   for (auto& substitute : model.substitutes) fill_equation(substitute, nothing);
@@ -92,23 +150,25 @@ ControllerModel<Scalar, Sensors, Errors, Components> narrow_model(const TrainedM
     detail::fill<Scalar, Errors>(agreement, Vector::Zero(trained.model.errors()), "errors");
   for (const SubstituteModel& substitute : trained.substitutes) {
     const auto lost = static_cast<std::size_t>(substitute.lost);
-    if (substitute.lost < 0 || substitute.lost >= sensors || substitute.model.coefficients.rows() != sensors)
+    if (substitute.lost < 0 || substitute.lost >= sensors || substitute.model.coefficients.rows() != inputs)
       throw Error("controller model", "a substitute for sensor " + std::to_string(substitute.lost), "0 to sensors - 1");
     fill_equation(model.substitutes[lost], substitute.model);
-    for (auto& row : model.substitutes[lost].coefficients) row[lost] = 0;
+    for (auto& row : model.substitutes[lost].coefficients)
+      for (std::size_t i = 0; i < row.size(); ++i)
+        if (trained.features.empty() ? i == lost : detail::is_of(trained.features[i], substitute.lost)) row[i] = 0;
     if (substitute.agreement_um.size() == trained.model.errors())
       detail::fill<Scalar, Errors>(model.agreement_um[lost], substitute.agreement_um, "errors");
     model.has_substitute[lost] = true;
   }
 
   const TrainingDomain<>& domain = trained.domain;
-  const bool known = domain.mean.size() == sensors;
-  const Vector mean = known ? domain.mean : Vector::Zero(sensors);
-  const Vector inverse_scale = known ? Vector(domain.scale.cwiseInverse()) : Vector::Ones(sensors);
-  detail::fill<Scalar, Sensors>(model.domain.mean, mean, "sensors");
-  detail::fill<Scalar, Sensors>(model.domain.inverse_scale, inverse_scale, "sensors");
-  detail::fill_columns<Scalar, Components, Sensors>(model.domain.rotations, domain.rotations, "components", "sensors");
-  detail::fill_columns<Scalar, Components, Sensors>(model.domain.loadings, domain.loadings, "components", "sensors");
+  const bool known = domain.mean.size() == inputs;
+  const Vector mean = known ? domain.mean : Vector::Zero(inputs);
+  const Vector inverse_scale = known ? Vector(domain.scale.cwiseInverse()) : Vector::Ones(inputs);
+  detail::fill<Scalar, Inputs>(model.domain.mean, mean, "inputs");
+  detail::fill<Scalar, Inputs>(model.domain.inverse_scale, inverse_scale, "inputs");
+  detail::fill_columns<Scalar, Components, Inputs>(model.domain.rotations, domain.rotations, "components", "inputs");
+  detail::fill_columns<Scalar, Components, Inputs>(model.domain.loadings, domain.loadings, "components", "inputs");
   detail::fill<Scalar, Components>(model.domain.inverse_score_variance, domain.score_variance.cwiseInverse(),
                                    "components");
   const bool wide = limit == DomainLimit::percent_99;

@@ -32,6 +32,12 @@ struct CompensationWishes {
   bool through_zero = false;           ///< no intercept: offset 0 at a first zero; after a datum always
   double zero_window_s = 5;            ///< samples of so long, at least three, must agree to become the zero
   double first_margin_K = 5;           ///< a first zero lies at most so far outside the beginnings of training
+  double session_s = 4 * 3600;         ///< after a pause of so long a session begins: lags have settled, and its
+                                       ///< climate is taken anew
+  bool probe = false;                  ///< a probe may correct the demand
+  std::optional<double> probe_largest_um;  ///< larger corrections by the probe are refused; default: the clamp
+  double probe_jump_deviations = 6;  ///< one so many deviations of training off the last needs a second that agrees
+  double probe_age_s = 1e9;          ///< a correction counts so long
   DomainPolicy domain_policy = DomainPolicy::warn;     ///< what to do with a sample unlike those of training
   DomainLimit domain_limit = DomainLimit::percent_99;  ///< which limit tells that it is unlike
   OutputSign sign = OutputSign::correction;            ///< what the offset means to the control
@@ -65,20 +71,23 @@ inline std::uint32_t steps_in(double time_s, double period_s) {
 /// Settings per step from `wishes` and what `trained` knows of its sensors. A model without a sensor envelope gives
 /// the range -50…150 degC and no rate or stuck check. Throws Error when the result breaks a rule of
 /// CompensatorSettings, naming it, and where a probe's zero (probe_level_um) would be applied; it counts in no clamp.
-template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size>
-CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& trained,
-                                                          const CompensationWishes& wishes = {}) {
+template <class Scalar, int Sensors = dynamic_size, int Errors = dynamic_size, int Features = none_or_dynamic(Sensors),
+          int Lags = none_or_dynamic(Sensors), int Probes = none_or_dynamic(Sensors)>
+CompensatorSettings<Scalar, Sensors, Errors, Features, Lags, Probes> settings_for(
+    const TrainedModel& trained, const CompensationWishes& wishes = {}) {
   if (!(wishes.period_s > 0)) throw Error("period_s", "not above 0", "the cycle time in seconds");
   detail::refuse_probe_level(trained, wishes);
-  CompensatorSettings<Scalar, Sensors, Errors> settings;
+  CompensatorSettings<Scalar, Sensors, Errors, Features, Lags, Probes> settings;
+  const Index sensors =
+      trained.features.empty() ? trained.model.sensors() : static_cast<Index>(trained.temperatures.size());
   const SensorEnvelope& known = trained.envelope;
   settings.zero = {wishes.zero,
                    std::min(most_zero_samples, std::max(3u, detail::steps_in(wishes.zero_window_s, wishes.period_s))),
                    wishes.through_zero};
   settings.stale_steps = std::max(1u, detail::steps_in(wishes.stale_s, wishes.period_s));
   std::uint32_t all_frozen_steps = 0;  // together they rest no longer than the liveliest
-  detail::fit_size<SensorLimits<Scalar>, Sensors>(settings.sensors, trained.model.sensors(), "sensors");
-  for (Index i = 0; i < trained.model.sensors(); ++i) {
+  detail::fit_size<SensorLimits<Scalar>, Sensors>(settings.sensors, sensors, "sensors");
+  for (Index i = 0; i < sensors; ++i) {
     SensorLimits<Scalar>& limits = settings.sensors[static_cast<std::size_t>(i)];
     limits.lowest_degC = static_cast<Scalar>(known.has_range() ? known.lowest_degC(i) - wishes.range_margin_K : -50);
     limits.highest_degC = static_cast<Scalar>(known.has_range() ? known.highest_degC(i) + wishes.range_margin_K : 150);
@@ -115,6 +124,24 @@ CompensatorSettings<Scalar, Sensors, Errors> settings_for(const TrainedModel& tr
         std::ceil(std::abs(trained.error_mean(j) - probe_level_um(trained, j)) + 4 * trained.error_scale(j));
     settings.outputs[static_cast<std::size_t>(j)] = {static_cast<Scalar>(wishes.clamp_um.value_or(usual_um)),
                                                      static_cast<Scalar>(wishes.slew_um_per_s * wishes.period_s)};
+  }
+  if constexpr (Features != 0) {
+    const auto lags = detail::lags_of(trained);
+    detail::fit_size<Scalar, Lags>(settings.features.lag_share, static_cast<Index>(lags.size()), "lags");
+    for (std::size_t k = 0; k < lags.size(); ++k)
+      settings.features.lag_share[k] = static_cast<Scalar>(-std::expm1(-wishes.period_s / (60 * lags[k].second)));
+    settings.features.session_steps = std::max(1u, detail::steps_in(wishes.session_s, wishes.period_s));
+  }
+  if constexpr (Probes != 0) {
+    detail::fit_size<ProbeLimits<Scalar>, Probes>(settings.probe, trained.model.errors(), "errors");
+    for (Index j = 0; j < trained.model.errors(); ++j) {
+      const double deviation_um = trained.degrees_of_freedom > 0 ? trained.residual_deviation_um(j) : 1e6;
+      settings.probe[static_cast<std::size_t>(j)] = {
+          wishes.probe_largest_um ? static_cast<Scalar>(*wishes.probe_largest_um)
+                                  : settings.outputs[static_cast<std::size_t>(j)].clamp_um,
+          static_cast<Scalar>(std::min(1e6, wishes.probe_jump_deviations * deviation_um)),
+          static_cast<Scalar>(detail::steps_in(wishes.probe_age_s, wishes.period_s))};
+    }
   }
   if (const char* rule = broken_rule(settings)) throw Error("compensator settings", "a broken rule", rule);
   return settings;

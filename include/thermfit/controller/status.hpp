@@ -41,6 +41,7 @@ enum class SensorFault : std::uint8_t {
 /// | 20–27 | how many sensors are not used |
 /// | 28–29 | ZeroSource: where the zero comes from |
 /// | 30    | a zero was asked for and is not there yet |
+/// | 31    | a probe's reading corrects the demand |
 struct CompensatorStatus {
   std::uint32_t word = 0;  ///< the bits of the table above
 
@@ -50,6 +51,7 @@ struct CompensatorStatus {
   static constexpr std::uint32_t bad_settings_bit = 1u << 7;    ///< bit 7 of the word
 
   static constexpr std::uint32_t zero_pending_bit = 1u << 30;  ///< bit 30 of the word
+  static constexpr std::uint32_t probed_bit = 1u << 31;        ///< bit 31 of the word
 
   /// What the compensator does: bits 0–3.
   constexpr CompensatorState state() const noexcept { return static_cast<CompensatorState>(word & 15u); }
@@ -71,6 +73,8 @@ struct CompensatorStatus {
   constexpr ZeroSource zero_source() const noexcept { return static_cast<ZeroSource>(word >> 28 & 3u); }
   /// Whether a zero was asked for and is not there yet.
   constexpr bool zero_pending() const noexcept { return (word & zero_pending_bit) != 0; }
+  /// Whether a probe's reading corrects the demand.
+  constexpr bool probed() const noexcept { return (word & probed_bit) != 0; }
 
   /// The part of the word that tells about sensors. Numbers above 255 read 255.
   static constexpr std::uint32_t sensor_bits(std::uint32_t first, SensorFault fault, std::uint32_t count) noexcept {

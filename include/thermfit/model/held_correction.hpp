@@ -15,10 +15,11 @@ struct ProbeLimits {
 
 /// What became of a reading.
 enum class ProbeReading {
-  taken,          ///< it is the correction from now on
-  no_number,      ///< not finite
-  too_large,      ///< beyond the largest correction
-  to_be_repeated  ///< too far off the last one; taken when the next agrees with it
+  taken,           ///< it is the correction from now on
+  no_number,       ///< not finite
+  too_large,       ///< beyond the largest correction
+  to_be_repeated,  ///< too far off the last one; taken when the next agrees with it
+  no_demand        ///< nothing is predicted that it could be compared with
 };
 
 /// What a model misses, measured now and then and held until the next reading: a measured error less the predicted one
