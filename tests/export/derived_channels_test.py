@@ -142,6 +142,20 @@ json.dump(document, open(os.path.join(work, "torn.json"), "w"))
 torn = subprocess.run([thermfit, "run", model, "--state", os.path.join(work, "torn.json"), "--off", "5"], input="T1,T2,T3\n20,20,20\n",
                       text=True, capture_output=True, check=True)
 assert "the digest does not fit" in torn.stderr and ",no datum," in torn.stdout
+clean = readings.readings(600, seed=4, faults=False)
+clean = clean[:1] * 5 + clean  # predict counts from the first row, a zero is the median of five
+times, free = [0], ["--slew", "1e6", "--clamp", "1e5", "--domain", "ignore", "--zero", "first", "--sign", "error"]
+for n in range(1, len(clean)):
+    times.append(times[-1] + (1 if n < 6 else source.choice([1, 1, 3, 60])))
+text = "time_s,T1,T2,T3\n" + "".join("%d,%s\n" % (t, ",".join(map(repr, row))) for t, row in zip(times, clean))
+batch = os.path.join(work, "batch.csv")
+open(batch, "w").write(text)
+predicted = json.loads(subprocess.run([thermfit, "predict", model, batch, "--json"], capture_output=True, text=True,
+                                      check=True).stdout)["batches"][0]["predicted_um"]
+ran = subprocess.run([thermfit, "run", model, *free], input=text, capture_output=True, text=True, check=True).stdout.splitlines()[1:]
+worst = max(abs(float(cell) - um) for line, row in list(zip(ran, predicted))[5:] for cell, um in zip(line.split(",")[1:3], row))
+print("run against predict, irregular times: %.1e um at most, of %.1f" % (worst, max(abs(um) for row in predicted for um in row)))
+assert worst < 1e-10
 got = by_component(OFF)
 different = [n for n, (a, b) in enumerate(zip(got[:800], expected)) if a != b]
 print("LinuxCNC component: %d of %d answers before the restart differ" % (len(different), 800), different[:3],

@@ -122,6 +122,7 @@ ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_mode
   constexpr int Inputs = Model::Inputs;
   Model model;
   const Index inputs = trained.model.sensors();
+  const char* const named = trained.features.empty() ? "sensors" : "features";
   const Index sensors = trained.features.empty() ? inputs : static_cast<Index>(trained.temperatures.size());
   if (inputs != (trained.features.empty() ? sensors : trained.inputs()))
     throw Error("controller model", std::to_string(inputs) + " coefficients", std::to_string(trained.inputs()));
@@ -134,8 +135,8 @@ ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_mode
   }
   if (sensors < 1 || sensors > 254)
     throw Error("controller model", std::to_string(sensors) + " sensors", "1 to 254", "choose fewer points");
-  const auto fill_equation = [](typename Model::Equation& equation, const LinearModel<>& from) {
-    detail::fill_columns<Scalar, Errors, Inputs>(equation.coefficients, from.coefficients, "errors", "inputs");
+  const auto fill_equation = [named](typename Model::Equation& equation, const LinearModel<>& from) {
+    detail::fill_columns<Scalar, Errors, Inputs>(equation.coefficients, from.coefficients, "errors", named);
     detail::fill<Scalar, Errors>(equation.intercept_um, from.intercept, "errors");
   };
   model.rise = trained.reference == TemperatureReference::rise;
@@ -165,10 +166,10 @@ ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_mode
   const bool known = domain.mean.size() == inputs;
   const Vector mean = known ? domain.mean : Vector::Zero(inputs);
   const Vector inverse_scale = known ? Vector(domain.scale.cwiseInverse()) : Vector::Ones(inputs);
-  detail::fill<Scalar, Inputs>(model.domain.mean, mean, "inputs");
-  detail::fill<Scalar, Inputs>(model.domain.inverse_scale, inverse_scale, "inputs");
-  detail::fill_columns<Scalar, Components, Inputs>(model.domain.rotations, domain.rotations, "components", "inputs");
-  detail::fill_columns<Scalar, Components, Inputs>(model.domain.loadings, domain.loadings, "components", "inputs");
+  detail::fill<Scalar, Inputs>(model.domain.mean, mean, named);
+  detail::fill<Scalar, Inputs>(model.domain.inverse_scale, inverse_scale, named);
+  detail::fill_columns<Scalar, Components, Inputs>(model.domain.rotations, domain.rotations, "components", named);
+  detail::fill_columns<Scalar, Components, Inputs>(model.domain.loadings, domain.loadings, "components", named);
   detail::fill<Scalar, Components>(model.domain.inverse_score_variance, domain.score_variance.cwiseInverse(),
                                    "components");
   const bool wide = limit == DomainLimit::percent_99;
