@@ -1,53 +1,67 @@
 #include "export/source_text.hpp"
-#include "export/st_features.hpp"
-#include "export/st_text.hpp"
+#include "export/st_zero.hpp"
 #include "export/test_vectors.hpp"
 #include "thermfit/error.hpp"
 
 /// IEC 61131-3 as every compiler takes it: scalars only, every loop written out, comparisons that NaN fails
 /// (`x >= lo AND x <= hi`), no bit operations. The arithmetic is that of controller/compensator.hpp, in its order.
-///
-/// The zero of datum.hpp lives in VAR RETAIN. There are no bytes to digest, so its check is a sum: 1 where the
-/// intercept drops out, plus the square root of the i-th prime times the zero of sensor i, less 1e4 where it has none.
-/// Those roots are independent over the rationals: two zeros of rounded readings, one torn out of the other, never add
-/// up to the same. Of a model with lags it covers where they are too, and is made anew in each step.
 
 namespace thermfit::cli {
 namespace {
 
 template <class Scalar>
-class StWriter : StFeatures<Scalar> {
-  using Features = StFeatures<Scalar>;
-  using Features::derived;
-  using Features::input;
-  using Features::inputs;
-  using Features::lags;
-  using Features::model_;
-  using Features::settings_;
-  using Text = StText<Scalar>;
-  using Text::count;
-  using Text::finite;
-  using Text::line;
-  using Text::most_steps;
-  using Text::number;
-  using Text::numbered;
-  using Text::of;
-  using Text::of_steps;
-  using Text::real;
-  using Text::set;
-  using Text::set_if;
-  using Text::type;
-  using Text::within;
-  using Text::without_sign;
+class StWriter : StZero<Scalar> {
+  using Base = StZero<Scalar>;
+  using Base::age_probe;
+  using Base::apply_domain;
+  using Base::check_sum;
+  using Base::collect;
+  using Base::components;
+  using Base::count;
+  using Base::count_unused;
+  using Base::derived;
+  using Base::drop_probe;
+  using Base::equation;
+  using Base::errors;
+  using Base::errors_;
+  using Base::finite;
+  using Base::guard;
+  using Base::heartbeat;
+  using Base::lags;
+  using Base::line;
+  using Base::model_;
+  using Base::most_steps;
+  using Base::number;
+  using Base::numbered;
+  using Base::of;
+  using Base::of_probe;
+  using Base::of_steps;
+  using Base::output;
+  using Base::probe;
+  using Base::probe_of;
+  using Base::probe_variables;
+  using Base::reading_of;
+  using Base::real;
+  using Base::request;
+  using Base::request_;
+  using Base::retain;
+  using Base::retained_variables;
+  using Base::samples;
+  using Base::sensors;
+  using Base::sensors_;
+  using Base::set;
+  using Base::set_if;
+  using Base::settings_;
+  using Base::show_zero;
+  using Base::trust;
+  using Base::type;
+  using Base::valid_mark;
+  using Base::values;
+  using Base::window;
+  using typename Base::Device;
 
  public:
-  using Device = HostCompensator<Scalar>;
-
-  StWriter(const ExportRequest& request, const typename Device::Model& model, const typename Device::Settings& settings)
-      : Features(model, settings),
-        request_(request),
-        sensors_(identifiers(request.trained.temperatures)),
-        errors_(identifiers(request.trained.errors)) {}
+  using Base::Base;
 
   std::string compensator() {
     line("FUNCTION_BLOCK " + request_.name);
@@ -77,7 +91,7 @@ class StWriter : StFeatures<Scalar> {
     line("END_IF;");
     outputs();
     line("END_FUNCTION_BLOCK");
-    return Text::taken();
+    return this->taken();
   }
 
   std::string test() {
@@ -127,18 +141,10 @@ class StWriter : StFeatures<Scalar> {
     line("END_IF;");
     line("END_IF;");
     line("END_FUNCTION_BLOCK");
-    return Text::taken();
+    return this->taken();
   }
 
  private:
-  inline static const std::string valid_mark = "1413891121";  // RetainedDatum::valid_mark
-
-  std::size_t sensors() const { return sensors_.size(); }
-  std::size_t errors() const { return errors_.size(); }
-  std::size_t components() const { return model_.domain.rotations.size(); }
-  std::string reading_of(std::size_t i) const { return "Temperature_" + sensors_[i]; }
-  std::string output(std::size_t j) const { return "Offset_" + errors_[j] + "_" + request_.unit.identifier; }
-
   std::string row(const TestVector<Scalar>& vector) const {
     std::string text =
         "remaining := " + std::to_string(vector.repeat) + "; expected_status := " + std::to_string(vector.status) + ";";
@@ -224,21 +230,6 @@ class StWriter : StFeatures<Scalar> {
     line("END_VAR");
   }
 
-  void retained_variables() {
-    line("VAR RETAIN");
-    line("(* the zero that corrections are relative to *)");
-    line("zero_mark : UDINT := 0; (* " + valid_mark + " where there is one *)");
-    line("zero_model : UDINT := 0; (* the model it belongs to *)");
-    line("zero_through : BOOL := FALSE; (* the intercept drops out *)");
-    line("zero_check : " + type() + " := 0.0; (* a sum over the others *)");
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      line(of(i, "zero") + " : " + type() + " := 0.0; (* degC *)");
-      line(of(i, "zero_known") + " : BOOL := FALSE; (* FALSE: none, which is not 0 degC *)");
-    }
-    this->retained_features();
-    line("END_VAR");
-  }
-
   /// Enable and Datum.
   void commands() {
     line("(* Enable and Datum *)");
@@ -311,406 +302,6 @@ class StWriter : StFeatures<Scalar> {
     for (const char* counter : {"unused", "first_unused", "first_fault"}) set(counter, "0");
   }
 
-  void request(const std::string& source) {
-    set("wanted_from", source);
-    set("taken", "0");
-    set("waited_steps", "0");
-  }
-
-  void check_sum() {
-    line("IF zero_through THEN check_now := 1.0; ELSE check_now := 0.0; END_IF;");
-    unsigned prime = 1;
-    const auto divides = [&](unsigned factor) { return prime % factor == 0; };
-    auto all = this->retained_numbers();
-    for (std::size_t i = sensors(); i-- > 0;) all.insert(all.begin(), {of(i, "zero"), of(i, "zero_known")});
-    for (const auto& [value, known] : all) {
-      for (bool found = false; !found;) {
-        found = true;
-        ++prime;
-        for (unsigned factor = 2; factor * factor <= prime; ++factor) found = found && !divides(factor);
-      }
-      const std::string weight = real(std::sqrt(static_cast<Scalar>(prime)));
-      set("check_now", "check_now + " + weight + " * " + value);
-      if (!known.empty()) set_if("NOT " + known, "check_now", "check_now - " + weight + " * 10000.0");
-    }
-  }
-
-  /// What is retained has moved. The mark is away while it does: a power cut in between leaves none.
-  void retain() {
-    line("IF zero_from <> 0 THEN");
-    set("zero_mark", "0");
-    check_sum();
-    set("zero_check", "check_now");
-    set("zero_mark", valid_mark);
-    line("END_IF;");
-  }
-
-  std::string probe_of(std::size_t j) const { return "Probe_" + errors_[j]; }
-  static std::string of_probe(std::size_t j, const std::string& what) { return "p" + number(j) + "_" + what; }
-
-  void probe_variables() {
-    if (!request_.wishes.probe) return;
-    line("probe_corrects : BOOL := FALSE;");
-    line("corrected, missed_um, away_um : " + type() + " := 0.0;");
-    for (std::size_t j = 0; j < errors(); ++j) {
-      line(of_probe(j, "held") + ", " + of_probe(j, "waiting_um") + " : " + type() + " := 0.0;");
-      line(of_probe(j, "age") + " : UDINT := 0;");
-      line(of_probe(j, "before") + ", " + of_probe(j, "taken") + ", " + of_probe(j, "waiting") + ", " +
-           of_probe(j, "agrees") + " : BOOL := FALSE;");
-    }
-  }
-
-  /// Compensator::probe, of the demand of the step before.
-  void probe() {
-    if (!request_.wishes.probe) return;
-    line("(* readings of the probe *)");
-    for (std::size_t j = 0; j < errors(); ++j) {
-      const ProbeLimits<Scalar>& limits = settings_.probe[j];
-      const std::string told = probe_of(j) + "_told";
-      line("IF " + probe_of(j) + "_new AND NOT " + of_probe(j, "before") + " THEN");
-      set(told, "4");
-      line("IF state = 2 OR state = 3 THEN");
-      set("missed_um", probe_of(j) + " - " + numbered("demand", j));
-      set("away_um", "missed_um - " + of_probe(j, "waiting_um"));
-      without_sign("away_um");
-      set(of_probe(j, "agrees"), of_probe(j, "waiting") + " AND away_um <= " + real(limits.jump_um));
-      line("IF NOT (" + finite("missed_um") + ") THEN");
-      set(told, "1");
-      line("ELSIF missed_um > " + real(limits.largest_um) + " OR missed_um < (-" + real(limits.largest_um) + ") THEN");
-      set(told, "2");
-      line("ELSE");
-      set("away_um", "missed_um - " + of_probe(j, "held"));
-      without_sign("away_um");
-      line("IF NOT " + of_probe(j, "agrees") + " AND away_um > " + real(limits.jump_um) + " THEN");
-      set(of_probe(j, "waiting"), "TRUE");
-      set(of_probe(j, "waiting_um"), "missed_um");
-      set(told, "3");
-      line("ELSE");
-      set(of_probe(j, "waiting"), "FALSE");
-      set(of_probe(j, "held"), "missed_um");
-      set(of_probe(j, "age"), "0");
-      set(of_probe(j, "taken"), "TRUE");
-      set(told, "0");
-      line("END_IF;");
-      line("END_IF;");
-      line("END_IF;");
-      line("END_IF;");
-      set(of_probe(j, "before"), probe_of(j) + "_new");
-    }
-  }
-
-  void drop_probe() {
-    for (std::size_t j = 0; j < errors() && request_.wishes.probe; ++j) {
-      for (const char* what : {"held", "waiting_um"}) set(of_probe(j, what), "0.0");
-      set(of_probe(j, "age"), "0");
-      for (const char* what : {"taken", "waiting"}) set(of_probe(j, what), "FALSE");
-    }
-  }
-
-  void age_probe() {
-    for (std::size_t j = 0; j < errors() && request_.wishes.probe; ++j) count(of_probe(j, "age"));
-  }
-
-  void heartbeat() {
-    line("(* whether the readings are new *)");
-    line("IF NOT has_heartbeat OR Heartbeat <> heartbeat_before THEN");
-    set("silent_steps", "0");
-    line("ELSE");
-    count("silent_steps");
-    line("END_IF;");
-    set_if("Heartbeat <> 0", "has_heartbeat", "TRUE");
-    set("heartbeat_before", "Heartbeat");
-    set("stale", "silent_steps >= " + std::to_string(settings_.stale_steps));
-  }
-
-  void guard() {
-    line("(* each reading by itself and by its past *)");
-    set("total", "0.0");
-    set("newcomer", "FALSE");
-    set("all_still", "4294967295");
-    for (std::size_t i = 0; i < sensors(); ++i) guard_alone(i);
-    line("(* and by the others *)");
-    set("all_frozen", settings_.patience.all_frozen_steps > 0
-                          ? "all_still >= " + std::to_string(settings_.patience.all_frozen_steps)
-                          : "FALSE");
-    for (std::size_t i = 0; i < sensors(); ++i) guard_by_others(i);
-  }
-
-  void guard_alone(std::size_t i) {
-    const SensorLimits<Scalar>& limits = settings_.sensors[i];
-    set(of(i, "fault"), "0");
-    line("IF stale THEN");
-    set(of(i, "fault"), "7");
-    line("ELSIF NOT (" + finite(reading_of(i)) + ") THEN");
-    set(of(i, "fault"), "1");
-    line("ELSIF NOT (" + within(reading_of(i), limits.lowest_degC, limits.highest_degC) + ") THEN");
-    set(of(i, "fault"), "2");
-    line("ELSIF " + of(i, "seen") + " THEN");
-    set("change", reading_of(i) + " - " + of(i, "reading"));
-    without_sign("change");
-    set_if("NOT (change <= " + real(limits.largest_step_K) + " * " + of_steps(of(i, "bad") + " + steps") + ")",
-           of(i, "fault"), "3");
-    line("END_IF;");
-    line("IF " + of(i, "fault") + " = 0 THEN");
-    line("IF " + of(i, "seen") + " AND " + reading_of(i) + " = " + of(i, "reading") + " THEN");
-    count(of(i, "still"));
-    line("ELSE");
-    set(of(i, "still"), "0");
-    line("END_IF;");
-    set_if("NOT " + of(i, "seen"), "newcomer", "TRUE");
-    set(of(i, "reading"), reading_of(i));
-    set(of(i, "seen"), "TRUE");
-    set_if(of(i, "still") + " < all_still", "all_still", of(i, "still"));
-    line("END_IF;");
-    set_vouched(i, "total", "total + ");
-  }
-
-  /// What a sensor tells about whether the others should have moved: of one that is lost, only what was trusted.
-  void set_vouched(std::size_t i, const std::string& variable, const std::string& plus) {
-    line("IF " + of(i, "lost") + " THEN");
-    set(variable, plus + of(i, "trusted_at"));
-    line("ELSE");
-    set(variable, plus + of(i, "reading"));
-    line("END_IF;");
-  }
-
-  void guard_by_others(std::size_t i) {
-    const SensorLimits<Scalar>& limits = settings_.sensors[i];
-    set_vouched(i, "others", "total - ");
-    line("IF newcomer OR " + of(i, "still") + " = 0 THEN");
-    set(of(i, "still"), "0");
-    set(of(i, "others"), "others");
-    line("ELSIF " + of(i, "fault") + " = 0 THEN");
-    std::string rests = "all_frozen";
-    if (limits.frozen_steps > 0) rests += " OR " + of(i, "still") + " >= " + std::to_string(limits.frozen_steps);
-    set_if(rests, of(i, "fault"), "4");
-    if (limits.stuck_steps > 0 && sensors() > 1) {
-      const Scalar moved = settings_.patience.others_moved_K * static_cast<Scalar>(sensors() - 1);
-      set("change", "others - " + of(i, "others"));
-      without_sign("change");
-      set_if(of(i, "still") + " >= " + std::to_string(limits.stuck_steps) + " AND change >= " + real(moved),
-             of(i, "fault"), "4");
-    }
-    line("END_IF;");
-    set(of(i, "returning"), "FALSE");
-    line("IF " + of(i, "fault") + " <> 0 THEN");
-    set(of(i, "good"), "0");
-    count(of(i, "bad"));
-    set_if(of(i, "bad") + " >= " + std::to_string(settings_.patience.lost_after_steps), of(i, "lost"), "TRUE");
-    line("ELSE");
-    set(of(i, "bad"), "0");
-    line("IF " + of(i, "lost") + " THEN");
-    count(of(i, "good"));
-    set(of(i, "returning"), of(i, "good") + " >= " + std::to_string(settings_.patience.recover_after_steps));
-    line("IF " + of(i, "returning") + " THEN " + of(i, "fault") + " := 8; ELSE " + of(i, "fault") + " := 5; END_IF;");
-    line("ELSE");
-    set(of(i, "trusted_at"), of(i, "reading"));
-    set(of(i, "trusted"), "TRUE");
-    line("END_IF;");
-    line("END_IF;");
-  }
-
-  /// Compensator::has_reference.
-  std::string has_reference(std::size_t i) const {
-    return model_.rise ? of(i, "zero_known") : "(zero_from = 0 OR " + of(i, "zero_known") + ")";
-  }
-  /// Whether sensor i, where it comes back alone, is compared with its substitute.
-  bool compared(std::size_t i) const { return model_.has_substitute[i] && model_.agreement_um[i][0] > 0; }
-
-  void trust() {
-    line("(* sensors that read well again are trusted where they agree with the others *)");
-    set("away", "0");
-    set("all_read", "TRUE");
-    set("referenced", "TRUE");
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      set_if(of(i, "fault") + " <> 0", "away", "away + 1");
-      set_if(of(i, "fault") + " <> 0 AND NOT " + of(i, "returning"), "all_read", "FALSE");
-      set_if("NOT " + has_reference(i), "referenced", "FALSE");
-    }
-    line("IF away > 0 THEN");
-    set("together", "FALSE");
-    if (settings_.domain_policy != DomainPolicy::ignore) {
-      line("IF all_read AND referenced THEN");
-      domain_values();
-      share_inside();
-      set("together", "share >= 1.0");
-      line("END_IF;");
-    }
-    bool any = false;
-    for (std::size_t i = 0; i < sensors(); ++i) any = any || compared(i);
-    if (any) {
-      line("IF away = 1 THEN");
-      values();
-      equation(model_.equation, "demand");
-      line("END_IF;");
-    }
-    for (std::size_t i = 0; i < sensors(); ++i) trust(i);
-    line("END_IF;");
-  }
-
-  void trust(std::size_t i) {
-    line("IF " + of(i, "returning") + " THEN");
-    set("change", of(i, "reading") + " - " + of(i, "trusted_at"));
-    without_sign("change");
-    set("vouched", std::string("together OR NOT ") + of(i, "trusted") + (model_.rise ? " OR zero_from = 0" : "") +
-                       " OR change <= " + real(settings_.patience.others_moved_K));
-    if (compared(i)) {
-      line("IF away = 1 AND " + has_reference(i) + " THEN");
-      equation(model_.substitutes[i], "other");
-      set("vouched", "TRUE");
-      for (std::size_t j = 0; j < errors(); ++j) {
-        set("change", numbered("demand", j) + " - " + numbered("other", j));
-        without_sign("change");
-        set_if("NOT (change <= " + real(model_.agreement_um[i][j]) + ")", "vouched", "FALSE");
-      }
-      line("END_IF;");
-    }
-    trust_if("vouched", i);
-    line("END_IF;");
-  }
-
-  void trust_if(const std::string& condition, std::size_t i) {
-    line("IF " + condition + " THEN");
-    if (sensors() > 1) set("change", of(i, "reading") + " - " + of(i, "trusted_at"));
-    for (std::size_t k = 0; k < sensors(); ++k)
-      if (k != i) set(of(k, "others"), of(k, "others") + " + change");
-    set(of(i, "lost"), "FALSE");
-    set(of(i, "returning"), "FALSE");
-    set(of(i, "fault"), "0");
-    line("END_IF;");
-  }
-
-  std::size_t samples() const { return settings_.zero.samples; }
-  static std::string window(std::size_t i, std::size_t k) { return of(i, numbered("w", k)); }
-
-  /// Datum::collect; the window is shifted, newest first.
-  void collect() {
-    line("(* one more sample for the zero that was asked for *)");
-    line("IF wanted_from <> 0 THEN");
-    count("waited_steps");
-    set("missing", "0");
-    set("same", "TRUE");
-    set("complete", "TRUE");
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      line("IF complete THEN");
-      std::string good = "(" + of(i, "fault") + " = 0 OR " + of(i, "returning") + ")";
-      if (model_.rise && settings_.zero.policy == ZeroPolicy::first)
-        good +=
-            " AND (wanted_from <> 1 OR (" +
-            within(of(i, "reading"), settings_.sensors[i].first_lowest_degC, settings_.sensors[i].first_highest_degC) +
-            "))";
-      set("sample_good", good);
-      std::string unusable = "NOT sample_good";
-      if (model_.has_substitute[i])
-        unusable += " AND NOT (" + of(i, "lost") + " AND waited_steps > " + std::to_string(settings_.hold_steps) + ")";
-      line("IF " + unusable + " THEN");
-      set("complete", "FALSE");
-      set("taken", "0");
-      line("ELSE");
-      set_if("NOT sample_good", "missing", "missing + 1");
-      set_if("NOT (" + of(i, "counted") + " = sample_good)", "same", "FALSE");
-      set(of(i, "counted"), "sample_good");
-      line("END_IF;");
-      line("END_IF;");
-    }
-    line("IF complete THEN");
-    set_if("missing > 1 OR NOT same", "taken", "0");
-    line("IF missing <= 1 THEN");
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      for (std::size_t k = samples() - 1; k > 0; --k) set(window(i, k), window(i, k - 1));
-      set(window(i, 0), of(i, "reading"));
-    }
-    set_if("taken < " + std::to_string(samples()), "taken", "taken + 1");
-    set("agreed", "taken >= " + std::to_string(samples()));
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      set("lowest", window(i, 0));
-      set("highest", window(i, 0));
-      for (std::size_t k = 1; k < samples(); ++k) {
-        set_if(window(i, k) + " < lowest", "lowest", window(i, k));
-        set_if(window(i, k) + " > highest", "highest", window(i, k));
-      }
-      set_if(of(i, "counted") + " AND NOT (highest - lowest <= " + real(settings_.sensors[i].agree_K) + ")", "agreed",
-             "FALSE");
-    }
-    line("IF agreed THEN");
-    take();
-    line("END_IF;");
-    line("END_IF;");
-    line("END_IF;");
-    line("END_IF;");
-  }
-
-  /// Datum::take. The mark is away while the values change: a power cut in between leaves none.
-  void take() {
-    set("zero_mark", "0");
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      line("(* the median *)");
-      for (std::size_t k = 0; k < samples(); ++k) set(numbered("rank", k), window(i, k));
-      for (std::size_t k = 0; k <= samples() / 2; ++k)
-        for (std::size_t m = k + 1; m < samples(); ++m) {
-          const std::string low = numbered("rank", k), high = numbered("rank", m);
-          line("IF " + high + " < " + low + " THEN swap := " + low + "; " + low + " := " + high + "; " + high +
-               " := swap; END_IF;");
-        }
-      set(of(i, "zero_known"), of(i, "counted"));
-      set(of(i, "zero"), "0.0");
-      set_if(of(i, "counted"), of(i, "zero"), numbered("rank", samples() / 2));
-      trust_if(of(i, "counted") + " AND " + of(i, "returning"), i);
-    }
-    this->take_lag_zeros();
-    drop_probe();
-    set("zero_through", settings_.zero.through_zero ? "TRUE" : "wanted_from = 2");
-    set("zero_from", "wanted_from");
-    set("wanted_from", "0");
-    set("zero_model", std::to_string(model_.identity));
-    check_sum();
-    set("zero_check", "check_now");
-    set("zero_mark", valid_mark);
-  }
-
-  void count_unused() {
-    line("(* which sensors can be used *)");
-    for (std::size_t i = 0; i < sensors(); ++i) {
-      set("fault_now", of(i, "fault"));
-      set_if("fault_now = 0 AND zero_from <> 0 AND NOT " + of(i, "zero_known"), "fault_now", "6");
-      line("IF fault_now <> 0 THEN");
-      line("IF unused = 0 THEN");
-      set("first_unused", number(i));
-      set("first_fault", "fault_now");
-      line("END_IF;");
-      set("unused", "unused + 1");
-      line("END_IF;");
-    }
-    set("usable", "unused = 0");
-    for (std::size_t i = 0; i < sensors(); ++i)
-      if (model_.has_substitute[i])
-        set_if("unused = 1 AND first_unused = " + number(i), "usable", of(i, "lost") + " OR NOT " + has_reference(i));
-  }
-
-  /// The readings less the zero, which is 0 where there is none.
-  void values() {
-    for (std::size_t i = 0; i < sensors(); ++i) set(of(i, "value"), of(i, "reading") + " - " + of(i, "zero"));
-    this->derive_values();
-  }
-  /// The same as the training domain takes them.
-  void domain_values() {
-    if (model_.rise) return values();
-    for (std::size_t i = 0; i < sensors(); ++i) set(of(i, "value"), of(i, "reading"));
-  }
-
-  /// Whether the intercept drops out.
-  std::string through() const { return model_.rise ? "zero_through" : "zero_from <> 0"; }
-
-  void equation(const typename Device::Model::Equation& from, const std::string& result) {
-    for (std::size_t j = 0; j < errors(); ++j) {
-      const std::string sum = numbered(result, j);
-      line("IF " + through() + " THEN " + sum + " := 0.0; ELSE " + sum + " := " + real(from.intercept_um[j]) +
-           "; END_IF;");
-      for (std::size_t i = 0; i < inputs(); ++i)
-        set(sum, sum + " + " + real(from.coefficients[j][i]) + " * " + input(i));
-    }
-  }
-
   /// outcome: 0 no demand, 1 demand, 2 demand of a substitute, 3 no zero.
   void judge() {
     count_unused();
@@ -739,123 +330,6 @@ class StWriter : StFeatures<Scalar> {
     line("IF unused = 0 THEN outcome := 1; ELSE outcome := 2; END_IF;");
     line("END_IF;");
     line("END_IF;");
-  }
-
-  std::string standardised(std::size_t i) const {
-    return "(" + input(i) + " - " + real(model_.domain.mean[i]) + ") * " + real(model_.domain.inverse_scale[i]);
-  }
-
-  void apply_domain() {
-    line("IF follow THEN");
-    line("(* how far from the samples of training, a missing sensor at what the others let expect *)");
-    domain_values();
-    if (derived())
-      fill_in_channels();
-    else
-      for (std::size_t i = 0; i < sensors(); ++i) {
-        if (!model_.has_substitute[i]) continue;
-        line("IF first_unused = " + number(i) + " THEN");
-        fill_in(i);
-        line("END_IF;");
-      }
-    share_inside();
-    line("IF share < 1.0 THEN");
-    set("outside", "TRUE");
-    if (settings_.domain_policy == DomainPolicy::shrink)
-      for (std::size_t j = 0; j < errors(); ++j) {
-        const std::string demand = numbered("demand", j), intercept = real(model_.equation.intercept_um[j]);
-        set("centre", real(model_.centre_um[j]));
-        line("IF " + through() + " THEN");
-        if (model_.rise) {
-          set("centre", "centre - " + intercept);
-        } else {
-          set("others", intercept);
-          for (std::size_t i = 0; i < sensors(); ++i)
-            set("others", "others + " + real(model_.equation.coefficients[j][i]) + " * " + of(i, "zero"));
-          set("centre", "centre - others");
-        }
-        line("END_IF;");
-        set(demand, "centre + share * (" + demand + " - centre)");
-      }
-    if (settings_.domain_policy == DomainPolicy::hold) set("follow", "FALSE");
-    line("END_IF;");
-    line("END_IF;");
-  }
-
-  /// The channels of the lost sensor, first at their means: then the scores are those of the others.
-  void fill_in_channels() {
-    const auto for_each_lost = [&](const auto& write) {
-      for (std::size_t i = 0; i < sensors(); ++i) {
-        if (!model_.has_substitute[i]) continue;
-        line("IF first_unused = " + number(i) + " THEN");
-        write(i);
-        line("END_IF;");
-      }
-    };
-    line("IF unused > 0 THEN");
-    for_each_lost([&](std::size_t i) {
-      for (const std::size_t f : this->made_of(i)) set(input(f), real(model_.domain.mean[f]));
-    });
-    scores();
-    for_each_lost([&](std::size_t i) { this->fill_in_all(i); });
-    line("END_IF;");
-  }
-
-  void scores() {
-    for (std::size_t a = 0; a < components(); ++a) {
-      const std::string score = numbered("score", a);
-      set(score, "0.0");
-      for (std::size_t i = 0; i < inputs(); ++i)
-        set(score, score + " + " + real(model_.domain.rotations[a][i]) + " * (" + standardised(i) + ")");
-    }
-  }
-
-  /// DomainGuard::fill_in.
-  void fill_in(std::size_t sensor) {
-    const auto& domain = model_.domain;
-    Scalar own = 0;
-    set("expectation", "0.0");
-    for (std::size_t a = 0; a < components(); ++a) {
-      set("residual", "0.0");
-      for (std::size_t i = 0; i < sensors(); ++i)
-        if (i != sensor) set("residual", "residual + " + real(domain.rotations[a][i]) + " * (" + standardised(i) + ")");
-      set("expectation", "expectation + " + real(domain.loadings[a][sensor]) + " * residual");
-      own += domain.loadings[a][sensor] * domain.rotations[a][sensor];
-    }
-    const std::string mean = real(domain.mean[sensor]);
-    set(of(sensor, "value"),
-        own < Scalar(0.99) ? mean + " + (expectation / " + real(1 - own) + ") / " + real(domain.inverse_scale[sensor])
-                           : mean);
-  }
-
-  /// DomainGuard::share_inside.
-  void share_inside() {
-    const auto& domain = model_.domain;
-    set("t_squared", "0.0");
-    set("spe", "0.0");
-    set("share", "1.0");
-    for (std::size_t a = 0; a < components(); ++a) {
-      const std::string score = numbered("score", a);
-      set(score, "0.0");
-      for (std::size_t i = 0; i < inputs(); ++i)
-        set(score, score + " + " + real(domain.rotations[a][i]) + " * (" + standardised(i) + ")");
-      set("t_squared", "t_squared + " + score + " * " + score + " * " + real(domain.inverse_score_variance[a]));
-    }
-    for (std::size_t i = 0; i < inputs(); ++i) {
-      set("residual", standardised(i));
-      for (std::size_t a = 0; a < components(); ++a)
-        set("residual", "residual - " + real(domain.loadings[a][i]) + " * " + numbered("score", a));
-      set("spe", "spe + residual * residual");
-    }
-    if (domain.t2_limit > 0)
-      set_if("NOT (t_squared <= " + real(domain.t2_limit) + ")", "share", real(domain.t2_limit) + " / t_squared");
-    if (domain.spe_limit > 0) {
-      line("IF NOT (spe <= " + real(domain.spe_limit) + ") THEN");
-      set_if("NOT (share <= " + real(domain.spe_limit) + " / spe)", "share", real(domain.spe_limit) + " / spe");
-      line("END_IF;");
-    }
-    set_if("NOT (share >= 0.0 AND share <= 1.0)", "share", "0.0");
-    set_if("share < 1.0", "share", "SQRT(share)");
   }
 
   /// next_state() for the events of a step.
@@ -927,11 +401,6 @@ class StWriter : StFeatures<Scalar> {
     set_if("at_zero AND state = 6", "state", "0");
   }
 
-  void show_zero() {
-    set("shown_from", "zero_from");
-    set("shown_pending", "wanted_from <> 0");
-  }
-
   void outputs() {
     line("(* what comes out *)");
     for (std::size_t j = 0; j < errors(); ++j)
@@ -950,9 +419,6 @@ class StWriter : StFeatures<Scalar> {
     set("Zero_pending", "shown_pending");
     set("Ok", "state = 2 AND NOT outside AND NOT clamped");
   }
-
-  const ExportRequest& request_;
-  std::vector<std::string> sensors_, errors_;
 };
 
 template <class Scalar>

@@ -3,36 +3,31 @@
 /// Derived channels in Structured Text: lags, the climate of a session, and the inputs of the model that follow; as
 /// controller/session.hpp, in its order. A model on the sensors themselves has none of it.
 
-#include "export/st_text.hpp"
-#include "export/test_vectors.hpp"
+#include "export/st_block.hpp"
 
 namespace thermfit::cli {
 
-/// Writes what a function block needs of the derived channels of `model`.
+/// Writes what a function block needs of the derived channels of its model.
 template <class Scalar>
-class StFeatures : public StText<Scalar> {
+class StFeatures : public StBlock<Scalar> {
  protected:
-  using Device = HostCompensator<Scalar>;
-  using Text = StText<Scalar>;
-  using Text::count;
-  using Text::line;
-  using Text::most_steps;
-  using Text::number;
-  using Text::numbered;
-  using Text::of;
-  using Text::real;
-  using Text::set;
-  using Text::set_if;
-  using Text::type;
-
-  StFeatures(const typename Device::Model& model, const typename Device::Settings& settings)
-      : model_(model), settings_(settings) {}
-
-  bool derived() const { return !model_.features.channels.empty(); }
-  std::size_t lags() const { return model_.features.lag_sensor.size(); }
-  /// What coefficient f multiplies.
-  std::string input(std::size_t f) const { return derived() ? "f" + number(f) + "_value" : of(f, "value"); }
-  std::size_t inputs() const { return model_.inputs(); }
+  using Base = StBlock<Scalar>;
+  using Base::Base;
+  using Base::derived;
+  using Base::input;
+  using Base::inputs;
+  using Base::lags;
+  using Base::line;
+  using Base::model_;
+  using Base::most_steps;
+  using Base::number;
+  using Base::numbered;
+  using Base::of;
+  using Base::real;
+  using Base::set;
+  using Base::set_if;
+  using Base::settings_;
+  using Base::type;
 
   void feature_inputs() {
     if (lags() > 0)
@@ -247,9 +242,6 @@ class StFeatures : public StText<Scalar> {
   }
 
   static std::string of_lag(std::size_t k, const std::string& what) { return "l" + number(k) + "_" + what; }
-
-  const typename Device::Model& model_;
-  const typename Device::Settings& settings_;
 };
 
 }  // namespace thermfit::cli

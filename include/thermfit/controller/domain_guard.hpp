@@ -83,7 +83,7 @@ class DomainGuard {
       scores_[a] = score;
       t2 += score * score * domain.inverse_score_variance[a];
     }
-    for (std::size_t i = 0; i < domain.mean.size(); ++i) {
+    for (std::size_t i = 0; domain.spe_limit > 0 && i < domain.mean.size(); ++i) {
       Scalar residual = (temperatures[i] - domain.mean[i]) * domain.inverse_scale[i];
       for (std::size_t a = 0; a < scores_.size(); ++a) residual -= domain.loadings[a][i] * scores_[a];
       spe += residual * residual;
