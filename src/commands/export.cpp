@@ -24,7 +24,8 @@ const char* const details =
     "\n"
     "c, cpp, st and linuxcnc hold the whole compensator: sensor checks, hold, substitute for a lost sensor, training "
     "domain, clamp, slew limit, status word. Of a model of the method transfer also its lags, the climate of the "
-    "session, and both over a power cycle, if it is told how long that was; onnx and card have no memory and take none. "
+    "session, and both over a power cycle, if it is told how long that was; onnx and card have no memory and take "
+    "none. "
     "--probe adds what a probe measures now and then.\n"
     "Exit codes: 0 done; 2 could not be done.";
 

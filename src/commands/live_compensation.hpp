@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ class LiveCompensation {
  public:
   /// `state_file` keeps the zero over a power cycle, of a model with features where its lags are too; empty: nothing is
   /// kept. `off_s`: how long it was off; NaN: by the clock of the input, where that goes on.
-  LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow, std::string state_file,
-                   double off_s);
+  LiveCompensation(const TrainedModel& trained, const CompensationWishes& wishes, bool shadow,
+                   std::string state_file = "", double off_s = std::numeric_limits<double>::quiet_NaN());
   LiveCompensation(const LiveCompensation&) = delete;
 
   /// Finds the model's columns, those of a probe (`probe_` and an error), and in shadow mode measured errors. Throws

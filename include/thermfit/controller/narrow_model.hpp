@@ -129,7 +129,10 @@ ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_mode
   if (!trained.features.empty() && trained.reference != TemperatureReference::rise)
     throw Error("controller model", "features of absolute temperatures", "of rises");
   if constexpr (Features == 0) {
-    require_plain(trained, "controller model");
+    if (!trained.features.empty())
+      throw Error("controller model",
+                  "a model of the method " + trained.method + ", whose coefficients are of features",
+                  "a model on temperatures themselves", "give ControllerModel as many Features and Lags as it has");
   } else {
     detail::fill_features<Scalar, Features, Lags>(model.features, trained);
   }
