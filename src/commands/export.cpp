@@ -55,6 +55,7 @@ Exit run_export(const Arguments& arguments, Console& console) {
   if (target != "card" && !request.control.empty()) throw UsageError("--control belongs to --target card");
   request.source = arguments.positionals()[0];
   request.trained = load_model(request.source);
+  require_no_inputs(request.trained, request.source);
   request.source = request.source.substr(request.source.rfind('/') + 1);
   request.name = arguments.value_or("--name", "thermal");
   if (identifiers({request.name})[0] != request.name || upper_case(request.name) == request.name)

@@ -51,6 +51,7 @@ Exit run_run(const Arguments& arguments, Console& console) {
   if (arguments.positionals().size() != 1) throw UsageError("run takes one model file");
   if (const auto state = arguments.value("--state")) require_not_read(arguments, *state);
   const TrainedModel trained = load_model(arguments.positionals()[0]);
+  require_no_inputs(trained, arguments.positionals()[0]);
   LiveCompensation live(trained, compensation_wishes(arguments), arguments.has("--shadow"),
                         arguments.value_or("--state", ""), arguments.number("--off", 0, 1e9).value_or(std::nan("")));
   note_probe_levels(trained, console);

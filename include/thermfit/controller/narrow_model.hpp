@@ -62,11 +62,6 @@ inline std::vector<std::pair<Index, double>> lags_of(const TrainedModel& trained
   return lags;
 }
 
-/// Whether a feature is made of that point.
-inline bool is_of(const Feature& feature, Index point) {
-  return feature.point == point || (feature.kind == FeatureKind::difference && feature.other == point);
-}
-
 /// Features and lags, checked against the points; the climates of training.
 template <class Scalar, int Features, int Lags>
 void fill_features(ControllerFeatures<Scalar, Features, Lags>& features, const TrainedModel& trained) {
@@ -126,6 +121,7 @@ ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_mode
   const Index sensors = trained.features.empty() ? inputs : static_cast<Index>(trained.temperatures.size());
   if (inputs != (trained.features.empty() ? sensors : trained.inputs()))
     throw Error("controller model", std::to_string(inputs) + " coefficients", std::to_string(trained.inputs()));
+  require_no_inputs(trained, "controller model");
   if (!trained.features.empty() && trained.reference != TemperatureReference::rise)
     throw Error("controller model", "features of absolute temperatures", "of rises");
   if constexpr (Features == 0) {
@@ -159,7 +155,7 @@ ControllerModel<Scalar, Sensors, Errors, Components, Features, Lags> narrow_mode
     fill_equation(model.substitutes[lost], substitute.model);
     for (auto& row : model.substitutes[lost].coefficients)
       for (std::size_t i = 0; i < row.size(); ++i)
-        if (trained.features.empty() ? i == lost : detail::is_of(trained.features[i], substitute.lost)) row[i] = 0;
+        if (trained.features.empty() ? i == lost : trained.features[i].is_of(substitute.lost)) row[i] = 0;
     if (substitute.agreement_um.size() == trained.model.errors())
       detail::fill<Scalar, Errors>(model.agreement_um[lost], substitute.agreement_um, "errors");
     model.has_substitute[lost] = true;

@@ -100,11 +100,4 @@ inline void require_no_inputs(const TrainedModel& model, const std::string& plac
                   "predict takes it; here fit a model without inputs: --features rise,lag,climate");
 }
 
-/// Refuses, in `place`, a model whose features that place cannot compute yet: throws Error.
-inline void require_plain(const TrainedModel& model, const std::string& place) {
-  if (!model.features.empty())
-    throw Error(place, "a model of the method " + model.method + ", whose coefficients are of derived channels",
-                "pls, mlr, pcr, ridge", "predict takes it; here fit a model by another method");
-}
-
 }  // namespace thermfit
