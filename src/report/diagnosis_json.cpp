@@ -155,6 +155,13 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
                        {"batches", diagnosis.batches},
                        {"verdict", word_of(diagnosis.verdict)}};
   document["effects"] = array_of(diagnosis.effects, effect_json);
+  const auto with_share = [](const FoundEffect& found) {
+    OrderedJson object = effect_json(found);
+    object["closes"] = figure(found.closes);
+    return object;
+  };
+  document["parts"] = array_of(diagnosis.parts, with_share);
+  document["suspected"] = array_of(diagnosis.suspected, with_share);
   document["gap"] = gap_json(diagnosis.gap);
   document["where"] = where_json(diagnosis.where);
   document["remaining"] = remaining_json(diagnosis.remaining, diagnosis.gap.unit);
@@ -165,11 +172,10 @@ OrderedJson document_of(const Diagnosis& diagnosis) {
       document["ruled_out"].push_back(
           {{"effect", one.effect}, {"location", one.location}, {"reason", reason_of(one, diagnosis.gap.held_out)}});
   const Support& support = diagnosis.support;
-  document["grounds"] = {{"candidates", support.candidates},
-                         {"nearest", array_of(support.nearest, named_json<Rival>)},
-                         {"gain_nats", figure(support.gain_nats)},
-                         {"closes", figure(support.closes)},
-                         {"leaves", figure(support.leaves)}};
+  document["grounds"] = {
+      {"candidates", support.candidates},       {"nearest", array_of(support.nearest, named_json<Rival>)},
+      {"gain_nats", figure(support.gain_nats)}, {"rival", figure(support.rival)},
+      {"closes", figure(support.closes)},       {"leaves", figure(support.leaves)}};
   document["calibration"] = array_of(diagnosis.calibration, [](const CalibrationMove& one) {
     return OrderedJson{{"parameter", one.parameter},         {"unit", one.unit},
                        {"from", figure(one.from)},           {"to", figure(one.to)},

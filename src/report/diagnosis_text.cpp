@@ -73,6 +73,35 @@ std::string moved_most(const Diagnosis& diagnosis) {
   return parts.empty() ? "" : " Moved most: " + joined(parts) + ".";
 }
 
+/// "at head_front acts a coolant film (coolant driven by pump, confidence 88 %)".
+std::string acts_text(const FoundEffect& found) {
+  std::string text = "at " + (found.location == "all" ? "all nodes" : found.location);
+  if (!found.same_place.empty()) text += " (or " + joined(found.same_place, " or ") + ")";
+  return text + " " + (found.meaning.empty() ? "acts an effect of its own" : found.meaning) + " (" + found.effect +
+         (found.driver.empty() ? "" : " driven by " + found.driver) + ", confidence " +
+         confidence_text(found.confidence) + ")";
+}
+
+/// Prior deviations from which a calibrated number says something about its part or thermometer.
+constexpr double telling_sds = 3;
+
+/// Calibrated numbers that are further off than the machine file lets expect.
+std::vector<std::string> moved_far(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const CalibrationMove& move : diagnosis.calibration) {
+    if (!move.pinned || std::abs(move.prior_sds) <= telling_sds) continue;
+    lines.push_back(move.parameter + ": " + general_text(move.to, 4) + (move.unit.empty() ? "" : " " + move.unit) +
+                    " instead of " + general_text(move.from, 4) + ", " + fixed_text(std::abs(move.prior_sds), 1) +
+                    " prior deviations: a wrong number in the machine file, a fault there, or something that it lacks");
+  }
+  return lines;
+}
+
+/// Whether these data could have shown what the simulator lacks, and did not.
+bool lacks_nothing(const Diagnosis& diagnosis) {
+  return diagnosis.suspected.empty() && diagnosis.weaker_claims.empty() && moved_far(diagnosis).empty();
+}
+
 /// Where, when and with what a gap without a name goes.
 std::string whereabouts(const Diagnosis& diagnosis) {
   std::string text;
@@ -125,7 +154,8 @@ std::string sentence(const Diagnosis& diagnosis) {
       return "There is no gap to explain: in " + named_output(gap) + " the simulation is off by " +
              size_text(gap.rms.as_simulated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit + ".";
     case Verdict::miscalibration:
-      return (gap.held_out ? "The simulator is miscalibrated and lacks nothing: its own parameters take "
+      return (gap.held_out ? std::string("The simulator is miscalibrated") +
+                                 (lacks_nothing(diagnosis) ? " and lacks nothing" : "") + ": its own parameters take "
                            : "The simulator's own parameters can close the gap: they take ") +
              named_output(gap) + " from " + size_text(gap.rms.as_simulated) + " to " + size_text(gap.rms.calibrated) +
              unit + " rms" +
@@ -133,6 +163,14 @@ std::string sentence(const Diagnosis& diagnosis) {
                            : " on the one batch they were fitted to, which proves nothing") +
              "; the noise is " + size_text(gap.rms.noise) + unit + "." + moved_most(diagnosis);
     case Verdict::unknown:
+      if (!diagnosis.parts.empty())
+        return "The gap is real and part of its cause is found: something acts at " + diagnosis.parts[0].location +
+               (diagnosis.parts[0].driver.empty() ? "" : ", driven by " + diagnosis.parts[0].driver) +
+               ", and its nearest law in the catalogue, " + diagnosis.parts[0].effect + ", closes " +
+               percent(diagnosis.parts[0].closes) +
+               " of the squared gap on batches not used for fitting. The rest has "
+               "no name: a law of another shape there, or another cause beside it." +
+               whereabouts(diagnosis);
       return "The gap is real and has no name: in " + named_output(gap) + " calibration leaves " +
              size_text(gap.rms.calibrated) + unit + " rms, the noise is " + size_text(gap.rms.noise) + unit +
              ", and nothing in the catalogue closes it" + (gap.held_out ? " on batches not used for fitting." : ".") +
@@ -143,11 +181,7 @@ std::string sentence(const Diagnosis& diagnosis) {
   }
   std::string text;
   for (const FoundEffect& found : diagnosis.effects) {
-    text += (text.empty() ? "at " : ", and at ") + (found.location == "all" ? "all nodes" : found.location);
-    if (!found.same_place.empty()) text += " (or " + joined(found.same_place, " or ") + ")";
-    text += " " + (found.meaning.empty() ? "acts an effect of its own" : found.meaning) + " (" + found.effect +
-            (found.driver.empty() ? "" : " driven by " + found.driver) + ", confidence " +
-            confidence_text(found.confidence) + ")";
+    text += (text.empty() ? "" : ", and ") + acts_text(found);
   }
   text += ": " + shrink_text(gap) + own_reading(diagnosis);
   if (diagnosis.verdict == Verdict::ambiguous) return "Several explanations fit these data. The best: " + text;
@@ -164,6 +198,20 @@ class Sections {
   }
   std::string text;
 };
+
+/// What is not named, and why it is told all the same.
+std::vector<std::string> suspected(const Diagnosis& diagnosis) {
+  std::vector<std::string> lines;
+  for (const FoundEffect& found : diagnosis.suspected) {
+    std::string line = title_of(found.effect, found.location, found.driver) + ", " + confidence_text(found.confidence) +
+                       ": the best account of what is left, short of evidence; closes " + percent(found.closes) +
+                       " of it";
+    for (const Rival& rival : found.alternatives)
+      line += "; or " + title_of(rival.effect, rival.location, rival.driver) + ", " + confidence_text(rival.confidence);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
 
 std::vector<std::string> ruled_out(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
@@ -330,6 +378,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     return text + sections.text + (diagnosis.gap.per_sensor.empty() ? "" : '\n' + gap_table(diagnosis));
   }
   text += remaining_text(diagnosis);
+  sections.add("Suspected", suspected(diagnosis));
+  sections.add("Calibrated beyond belief", moved_far(diagnosis));
   sections.add("Nearest, but not enough for a name", nearest_accounts(diagnosis));
   sections.add("Ruled out", ruled_out(diagnosis));
   sections.add("Not told apart by these data", not_told_apart(diagnosis));

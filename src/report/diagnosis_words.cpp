@@ -103,7 +103,9 @@ std::string joined(const std::vector<std::string>& parts, const std::string& bet
 
 std::string output_name(const Gap& gap) { return gap.output.empty() ? "temperatures" : gap.output; }
 
-std::string name_of(const Rival& rival) { return rival.effect + " at " + rival.location; }
+std::string name_of(const Rival& rival) {
+  return rival.effect + (rival.location.empty() ? "" : " at " + rival.location);
+}
 
 std::string reason_of(const RuledOut& one, bool held_out) {
   const std::string where = held_out ? " on batches not used for fitting" : "";

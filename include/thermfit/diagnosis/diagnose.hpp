@@ -87,10 +87,11 @@ std::vector<RuledOut> ruled_out(const SearchResult& found, const Judgement& judg
   const bool nothing_lacks = judgement.verdict == Verdict::none || judgement.verdict == Verdict::miscalibration;
   if (before <= 0 || nothing_lacks) return result;
   std::vector<std::string> said;
-  for (const FoundEffect& one : judgement.effects) {
-    said.push_back(one.effect);
-    for (const Rival& rival : one.alternatives) said.push_back(rival.effect);
-  }
+  for (const auto* told : {&judgement.effects, &judgement.suspicions.parts, &judgement.suspicions.suspected})
+    for (const FoundEffect& one : *told) {
+      said.push_back(one.effect);
+      for (const Rival& rival : one.alternatives) said.push_back(rival.effect);
+    }
   for (const Account& one : found.single) {
     const ThermalNetwork::AddedEffect& added = one.effects[0];
     if (std::find(said.begin(), said.end(), added.effect) != said.end()) continue;
@@ -180,10 +181,18 @@ std::vector<FittedRival> fitted_rivals(const SearchResult& found, const Judgemen
   return result;
 }
 
+/// The rival of an effect that is only suspected.
+constexpr const char* calibration_alone = "calibration alone";
+
 template <typename Scalar = double>
 NextExperiment experiment_after(const SearchResult& found, const Judgement& judgement, const Diagnosis& diagnosis,
                                 const EffectLibrary& library) {
-  const std::vector<FittedRival> rivals = fitted_rivals<Scalar>(found, judgement);
+  std::vector<FittedRival> rivals = fitted_rivals<Scalar>(found, judgement);
+  if (judgement.effects.empty() && !judgement.suspicions.suspected.empty()) {
+    const FoundEffect& one = judgement.suspicions.suspected[0];
+    rivals = {{{one.effect, one.location, one.driver, one.confidence}, found.single[0].fit.network()},
+              {{calibration_alone, "", "", 1 - one.confidence}, found.calibrated.fit.network()}};
+  }
   const Account& nearest = found.single.empty() ? found.calibrated : found.single[0];
   if (rivals.size() > 1) return next_experiment(rivals, found.seen, found.calibrated.fit, nearest.fit.noise, library);
   double hours = 0;
@@ -276,6 +285,8 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
   diagnosis.batches = found.seen.names;
   diagnosis.verdict = judgement.verdict;
   diagnosis.effects = judgement.effects;
+  diagnosis.parts = judgement.suspicions.parts;
+  diagnosis.suspected = judgement.suspicions.suspected;
   diagnosis.support = judgement.support;
   diagnosis.gap = gap_of(found.seen, judgement.levels, options.seed, !found.folds.empty());
   diagnosis.gap.transfer = detail::transfer_by_level<Scalar>(found, judgement, machine, real, library);

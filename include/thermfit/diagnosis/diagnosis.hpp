@@ -70,6 +70,7 @@ struct FoundEffect {
   std::vector<std::string> same_place;  ///< places that cannot be told from `location` on these data
   std::string meaning;                  ///< what the effect says of itself, Effect::meaning()
   bool against_as_given = false;        ///< calibration can do the same: it counts against the machine as given
+  double closes = 0;                    ///< share of the squared gap beyond expectation, on held-out batches
 };
 
 /// Why an explanation that was tried was dropped.
@@ -243,6 +244,7 @@ struct Support {
   std::size_t candidates = 0;  ///< effects at places that were tried
   std::vector<Rival> nearest;  ///< effects of the account; empty where nothing was worth a closer look
   double gain_nats = 0;        ///< of its evidence over calibration alone
+  double rival = 0;            ///< share of it that another effect would reach in its stead
   double closes = 0;           ///< share of the squared gap beyond expectation, on held-out batches
   double leaves = 0;           ///< squared gap beyond expectation, in units of what is expected
 };
@@ -319,13 +321,15 @@ struct Diagnosis {
   std::vector<std::string> batches;                  ///< names of those compared
   Verdict verdict = Verdict::unknown;                ///< `effects` is empty unless it is `effect` or `ambiguous`
   bool unlike_sides = false;  ///< the sides are not written down alike (data_problems): nothing else was looked for
-  std::vector<FoundEffect> effects;          ///< strongest first
-  Gap gap;                                   ///< how large, level by level
-  Where where;                               ///< on the machine and in time
-  Remaining remaining;                       ///< after the best explanation, channel by channel
-  NextExperiment next_experiment;            ///< to decide what is left open
-  std::vector<RuledOut> ruled_out;           ///< each effect once
-  Support support;                           ///< numbers behind the verdict
+  std::vector<FoundEffect> effects;    ///< named: strongest first
+  std::vector<FoundEffect> parts;      ///< act beyond doubt, at that place by that driver, but more remains: no names
+  std::vector<FoundEffect> suspected;  ///< the best account, or one more beside the named, short of evidence: no names
+  Gap gap;                             ///< how large, level by level
+  Where where;                         ///< on the machine and in time
+  Remaining remaining;                 ///< after the best explanation, channel by channel
+  NextExperiment next_experiment;      ///< to decide what is left open
+  std::vector<RuledOut> ruled_out;     ///< each effect once
+  Support support;                     ///< numbers behind the verdict
   std::vector<CalibrationMove> calibration;  ///< largest move first
   std::vector<FittedBatch> fitted_batches;   ///< starts and rooms, where the machine's rules leave them open
   std::vector<DataProblem> data_problems;    ///< seen on the way

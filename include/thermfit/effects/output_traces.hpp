@@ -34,6 +34,7 @@ struct OutputTrace {
   TraceNumber strength;                        ///< name and unit of the coefficient of a single column
   std::vector<TraceNumber> shape;              ///< what is fixed in this variant
   bool unit_strength = false;                  ///< the coefficient is 1 by its law: the shape alone sets the size
+  bool like_lumping = false;                   ///< lags alone shape it: what coarse lumps leave looks much alike
   std::vector<std::pair<Index, int>> acts_on;  ///< where its heat flow acts, with the sign of the response (0: either)
 };
 
@@ -196,6 +197,7 @@ class OutputTraces {
     OutputTrace& one = begin(place(channel), {}, {channel}, 1);
     one.strength = {"strength", "1"};
     one.unit_strength = true;
+    one.like_lumping = channel < campaign_.temperatures;
     one.shape = {std::move(shape)};
     for (std::size_t b = 0; b < campaign_.batches.size(); ++b) {
       const Vector course = simulated(channel, b);
@@ -211,6 +213,7 @@ class OutputTraces {
   OutputTrace& heat_flow(std::string location, std::string driver, const std::vector<TraceLaw>& flows) {
     OutputTrace& one =
         begin(std::move(location), std::move(driver), every_channel(), rungs * static_cast<Index>(flows.size()));
+    one.like_lumping = true;
     for (std::size_t b = 0; b < campaign_.batches.size(); ++b)
       for (std::size_t f = 0; f < flows.size(); ++f) {
         const Vector flow = flows[f](campaign_.batches[b]);
@@ -228,6 +231,7 @@ class OutputTraces {
   /// A start of its own that fades: through four lags, in every channel.
   OutputTrace& fading_start() {
     OutputTrace& one = begin({}, {}, every_channel(), rungs);
+    one.like_lumping = true;
     for (std::size_t b = 0; b < campaign_.batches.size(); ++b)
       for (Index k = 0; k < rungs; ++k) {
         Vector left = campaign_.batches[b].time_s;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "thermfit/compiled.hpp"
-#include "thermfit/diagnosis/judgement/proof.hpp"
+#include "thermfit/diagnosis/judgement/suspicion.hpp"
 
 namespace thermfit {
 
@@ -13,6 +13,7 @@ namespace thermfit {
 struct Judgement {
   Verdict verdict = Verdict::unknown;  ///< `effect` or `ambiguous` where something is named
   std::vector<FoundEffect> effects;    ///< empty for none, miscalibration and unknown
+  Suspicions suspicions;               ///< what is told without a name
   AccountIndex best;                   ///< the account behind `effects`; calibration alone where there are none
   AccountIndex nearest;                ///< the best account tried, named or not
   Support support;                     ///< of `nearest`
@@ -55,9 +56,11 @@ Judgement judge(const SearchContext& context, const SearchResult& found, const T
     const bool rivals = std::any_of(result.effects.begin(), result.effects.end(),
                                     [](const FoundEffect& one) { return !one.alternatives.empty(); });
     result.verdict = proof == Proof::suspicion || rivals ? Verdict::ambiguous : Verdict::effect;
+    result.suspicions.suspected = suspected_beside<Scalar>(context, found, result.effects, thresholds);
     return result;
   }
   result.levels.with_effect = result.levels.calibrated;
+  result.suspicions = suspicions_of<Scalar>(context, found, naming, proof, thresholds, seed);
   const bool unexplained = naming.real || proof == Proof::harms || (!named && naming.odds >= 0);
   result.verdict = unexplained ? Verdict::unknown : verdict_of_calibration<Scalar>(found, thresholds);
   return result;

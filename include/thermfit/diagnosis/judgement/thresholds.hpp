@@ -23,13 +23,18 @@ struct Thresholds {
   double known_by_left = 1.6;         ///< … less this times log(1 + what it leaves)
   double least_known = 0.5;           ///< probability from which the cause is named
   double least_second = 0.5;          ///< probability from which a second effect is named
-  double beyond_doubt = 7;        ///< log odds of an effect (a thousand to one) that need no gap to be seen shrinking
-  double law_tolerance = 0.05;    ///< share of its evidence that the form of a law may be short of, no second effect
-  double listed = 0.05;           ///< rivals above this probability are listed
-  double surely_shrinks = 20;     ///< percent by which the gap of some channel must shrink …
-  double may_shrink = 40;         ///< … or that the upper end of its interval must reach
-  double harm = 0.01;             ///< sum of log ratios by which displacements may be further off with the effect
-  std::size_t proving_folds = 3;  ///< with fewer, what fits best is a suspicion
+  double beyond_doubt = 7;         ///< log odds of an effect (a thousand to one) that need no gap to be seen shrinking
+  double law_tolerance = 0.05;     ///< share of its evidence that the form of a law may be short of, no second effect
+  double suspected_from = -3.8;    ///< log odds of the best account that is not named: this …
+  double suspected_by_gain = 1.1;  ///< … and this times log(1 + nats that it gains) …
+  double suspected_by_left = 3.1;  ///< … less this times log(1 + what it leaves)
+  double least_suspected = 0.1;    ///< probability from which it is told
+  double part = 0.5;               ///< share of the gap that a part of the cause closes at least
+  double listed = 0.05;            ///< rivals above this probability are listed
+  double surely_shrinks = 20;      ///< percent by which the gap of some channel must shrink …
+  double may_shrink = 40;          ///< … or that the upper end of its interval must reach
+  double harm = 0.01;              ///< sum of log ratios by which displacements may be further off with the effect
+  std::size_t proving_folds = 3;   ///< with fewer, what fits best is a suspicion
 };
 
 /// Numbers that decide, by the name of their field: what a diagnosis says that it was judged by.
@@ -47,6 +52,11 @@ inline NamedNumbers named_numbers(const Thresholds& of) {
           {"least_second", of.least_second},
           {"beyond_doubt", of.beyond_doubt},
           {"law_tolerance", of.law_tolerance},
+          {"suspected_from", of.suspected_from},
+          {"suspected_by_gain", of.suspected_by_gain},
+          {"suspected_by_left", of.suspected_by_left},
+          {"least_suspected", of.least_suspected},
+          {"part", of.part},
           {"listed", of.listed},
           {"surely_shrinks", of.surely_shrinks},
           {"may_shrink", of.may_shrink},

@@ -177,28 +177,13 @@ class OutputsDiagnosis {
 
   /// A heat flow that leaves the displacement at its noise explains nothing worth naming.
   bool matters(const TraceScore& score) const {
-    if (score.channels.size() == 1)
-      return score.channels[0].contribution >
-             limits_.least_contribution_noises * channel(score.channels[0].channel).noise;
     const PairedChannel& output = channel(headline());
-    return output.as_simulated > limits_.none_below_noises * output.noise;
+    return score.channels.size() == 1 || output.as_simulated > limits_.none_below_noises * output.noise;
   }
 
-  /// Takes the best effect if it is decisive; returns whether another round makes sense.
-  bool take_best(bool further) {
-    const std::vector<Suspect> found = suspects_of(scan_, campaign_, limits_);
-    if (!further) note_ruled_out(found);
-    const double needed = (further ? limits_.further : 1) * limits_.decisive_nats;
-    if (found.empty() || found[0].gain < needed || !matters(*found[0].score)) return false;
+  /// The strongest of `found` with its rivals, each with its probability among them.
+  FoundEffect entry_of(const std::vector<Suspect>& found) const {
     const Suspect& best = found[0];
-    if (further && is_rival(best)) return false;
-    const OutputTrace& trace = scan_.trace_of(*best.score);
-    const std::vector<PairedChannel> before = channels_;
-    add_to_basis(trace);
-    if (further && !improves(before, *best.score)) {
-      channels_ = before;
-      return false;
-    }
     FoundEffect effect = named(best, 0);
     for (const Suspect& one : found) {
       const bool same = one.effect == best.effect && one.driver == best.driver;
@@ -209,12 +194,44 @@ class OutputsDiagnosis {
       else
         effect.alternatives.push_back({one.effect, one.location, one.driver, one.probability});
     }
+    return effect;
+  }
+
+  /// Takes the best effect if it is decisive; returns whether another round makes sense.
+  bool take_best(bool further) {
+    const std::vector<Suspect> found = suspects_of(scan_, campaign_, limits_);
     if (!further) {
-      stage_ = trace.stage;
-      told_ = best.score->channels.size() == 1 ? best.score->channels[0].channel : headline();
+      note_ruled_out(found);
+      note_leader(found);
     }
-    result_.effects.push_back(std::move(effect));
+    const double needed = (further ? limits_.further : 1) * limits_.decisive_nats;
+    if (found.empty() || found[0].gain < needed || !matters(*found[0].score)) return false;
+    const Suspect& best = found[0];
+    if (further && is_rival(best)) return false;
+    const std::vector<PairedChannel> before = channels_;
+    add_to_basis(scan_.trace_of(*best.score));
+    if (further && !improves(before, *best.score)) {
+      channels_ = before;
+      return false;
+    }
+    result_.effects.push_back(entry_of(found));
     return true;
+  }
+
+  /// Keeps what the strongest effect rests on, be it taken or not.
+  void note_leader(const std::vector<Suspect>& found) {
+    if (found.empty() || !(found[0].gain > 0)) return;
+    const Suspect& best = found[0];
+    const OutputTrace& trace = scan_.trace_of(*best.score);
+    leader_.effect = entry_of(found);
+    leader_.trace = trace;
+    leader_.score = *best.score;
+    const auto rival = std::find_if(found.begin(), found.end(), [&](const Suspect& one) {
+      return one.effect != best.effect || one.driver != best.driver;
+    });
+    leader_.rival = rival == found.end() ? 0 : rival->gain / best.gain;
+    stage_ = trace.stage;
+    told_ = leader_.score.channels.size() == 1 ? leader_.score.channels[0].channel : headline();
   }
 
   /// An entry of the diagnosis: what is fixed in the trace, then its strength, or where many channels answer, how large
@@ -301,8 +318,39 @@ class OutputsDiagnosis {
     }
   }
 
-  /// Too much is left in the channels the effect should explain: the cause is something else.
-  bool leaves_too_much() const {
+  /// The strongest effect of the first round, be it taken or not, and what it rests on.
+  struct Leader {
+    FoundEffect effect;  ///< with its probability among its rivals
+    OutputTrace trace;   ///< its own
+    TraceScore score;    ///< of the trace; gain 0: there is none
+    double rival = 0;    ///< share of its gain that another effect reaches
+  };
+
+  /// What the leader rests on. Channels weigh by what it gains in them: the gap of others speaks neither for nor
+  /// against it.
+  Support support() const {
+    Support result;
+    result.candidates = scan_.traces.size();
+    if (!(leader_.score.gain > 0)) return result;
+    result.nearest = {{leader_.effect.effect, leader_.effect.location, leader_.effect.driver, 0}};
+    result.gain_nats = leader_.score.gain;
+    result.rival = leader_.rival;
+    double weights = 0;
+    for (const ChannelScore& one : leader_.score.channels) {
+      const PairedChannel &before = first_[static_cast<std::size_t>(one.channel)], &after = channel(one.channel);
+      if (!(one.gain > 0) || before.noise <= 0) continue;
+      const auto [closed, left] =
+          closed_and_left(leader_.effect.against_as_given ? before.as_simulated : before.calibrated, after);
+      weights += one.gain;
+      result.closes += one.gain * closed;
+      result.leaves += one.gain * left;
+    }
+    if (weights > 0) result.closes /= weights, result.leaves /= weights;
+    return result;
+  }
+
+  /// Squared gaps of all outputs beyond their noise, in squares of it, with calibration alone and with the effects.
+  std::pair<double, double> excess() const {
     double before = 0, after = 0;
     for (Index c = 0; c < campaign_.channel_count(); ++c) {
       const PairedChannel& one = channel(c);
@@ -310,8 +358,14 @@ class OutputsDiagnosis {
       before += std::max(0., std::pow(first_[static_cast<std::size_t>(c)].calibrated / one.noise, 2) - 1);
       after += std::max(0., std::pow(one.calibrated / one.noise, 2) - 1);
     }
-    const double outputs = static_cast<double>(campaign_.channel_count());
-    return after > limits_.left_per_channel * outputs && after > limits_.left_share * before;
+    return {before, after};
+  }
+
+  /// Too much is left in the channels the effect should explain: the cause is something else.
+  bool leaves_too_much() const {
+    const auto [before, after] = excess();
+    return after > limits_.left_per_channel * static_cast<double>(campaign_.channel_count()) &&
+           after > limits_.left_share * before;
   }
 
   /// The gap that is told must shrink on batches left out, else the effect explains something else.
@@ -341,16 +395,18 @@ class OutputsDiagnosis {
       const double before =
           library_.at(trace.effect).calibration_does_the_same() ? channel(own).as_simulated : channel(own).calibrated;
       add_to_basis(trace);
-      if (channel(own).calibrated > limits_.fault_leaves * before) {
+      const double cause = known(closed_and_left(before, channel(own)).first, trace.like_lumping);
+      if (channel(own).calibrated > limits_.fault_leaves * before ||
+          cause * rivals[0].probability < limits_.least_named) {
         channels_ = first_;
         continue;
       }
       rivals[0].location = name(own);
-      FoundEffect effect = named(rivals[0], rivals[0].probability);
+      FoundEffect effect = named(rivals[0], cause * rivals[0].probability);
       for (std::size_t i = 1; i < rivals.size(); ++i)
         if (rivals[i].probability >= options_.shared.listed && rivals[i].effect != trace.effect)
           effect.alternatives.push_back(
-              {rivals[i].effect, rivals[i].location, rivals[i].driver, rivals[i].probability});
+              {rivals[i].effect, rivals[i].location, rivals[i].driver, cause * rivals[i].probability});
       result_.effects = {std::move(effect)};
       stage_ = trace.stage;
       told_ = own;
@@ -370,20 +426,72 @@ class OutputsDiagnosis {
     return closed || nearly ? Verdict::miscalibration : Verdict::unknown;
   }
 
-  /// Drops what held-out batches do not bear out, looks for a faulty thermometer beside a gap without a name, decides
-  /// the verdict and tells the rest.
-  void conclude() {
-    const bool taken_back = !result_.effects.empty() && (leaves_too_much() || !told_gap_shrinks());
-    if (taken_back) {
-      const FoundEffect& nearest = result_.effects[0];
-      result_.ruled_out.insert(result_.ruled_out.begin(), {nearest.effect, nearest.location, RuledOutBy::remains, 0});
-      result_.effects.clear();
+  /// Probability that a trace which closes this share of its gap is the cause, not the nearest thing in the catalogue
+  /// to another one.
+  double known(double closes, bool like_lumping) const {
+    return logistic(limits_.known_from + limits_.known_by_share * closes -
+                    (like_lumping ? limits_.known_like_lumping : 0));
+  }
+
+  /// Share of the squared gap `from` (rms) of a channel, beyond its noise, that is closed now, and what is left of it
+  /// in squares of the noise.
+  std::pair<double, double> closed_and_left(double from, const PairedChannel& now) const {
+    const auto beyond = [&](double rms) { return std::max(0., std::pow(rms / now.noise, 2) - 1); };
+    const double open = beyond(from), left = beyond(now.calibrated);
+    return {open > 0 ? std::clamp(1 - left / open, 0., 1.) : 1, left};
+  }
+
+  /// Suspects the leader where it is not decisive: true effects that are that faint gain little more than chance does.
+  void suspect_leader() {
+    FoundEffect suspect = leader_.effect;
+    suspect.closes = result_.support.closes;
+    suspect.confidence =
+        std::min(.5, logistic(limits_.suspected_from + limits_.suspected_by_gain * std::log1p(leader_.score.gain) +
+                              limits_.suspected_by_share * suspect.closes));
+    suspect.alternatives.clear();
+    if (suspect.confidence >= limits_.least_suspected) result_.suspected = {std::move(suspect)};
+  }
+
+  /// Leaves named what held-out batches bear out and is probable enough; the rest of it is a part of the cause,
+  /// suspected or ruled out. Whether a gap without a name remains beside it.
+  bool take_back() {
+    const bool too_much = leaves_too_much(), shrinks = told_gap_shrinks();
+    const double cause = known(result_.support.closes, leader_.trace.like_lumping);
+    for (FoundEffect& one : result_.effects) {
+      one.confidence *= cause;
+      for (Rival& rival : one.alternatives) rival.confidence *= cause;
     }
-    if (result_.effects.empty() && !taken_back) told_ = headline();
+    FoundEffect& nearest = result_.effects[0];
+    nearest.closes = result_.support.closes;
+    if (!too_much && shrinks && nearest.confidence >= limits_.least_named) return false;
+    nearest.confidence = std::min(nearest.confidence, .5);
+    if (nearest.confidence < limits_.least_suspected) {
+      result_.ruled_out.insert(result_.ruled_out.begin(), {nearest.effect, nearest.location, RuledOutBy::remains, 0});
+    } else if (too_much && shrinks) {
+      result_.parts.push_back(nearest);
+    } else {
+      result_.suspected.push_back(nearest);
+    }
+    result_.effects.clear();
+    return too_much || !shrinks;
+  }
+
+  /// Takes back what is no name, looks for a faulty thermometer beside a gap without a name, decides the verdict and
+  /// tells the rest.
+  void conclude() {
+    const bool taken = !result_.effects.empty(), led = leader_.score.gain > 0;
+    if (!taken && led) add_to_basis(leader_.trace);
+    result_.support = support();
+    const bool remains = taken && take_back();
+    if (!taken && led) suspect_leader();
+    if (result_.effects.empty() && !remains) {
+      channels_ = first_;
+      told_ = headline();
+    }
     Verdict unnamed = Verdict::unknown;
     std::vector<std::string> beside;
     if (result_.effects.empty()) {
-      if (!taken_back) unnamed = verdict_of_levels();
+      if (!remains) unnamed = verdict_of_levels();
       if (unnamed == Verdict::unknown && name_sensor_fault())
         for (Index c = 0; c < campaign_.channel_count(); ++c)
           if (c != told_ && campaign_.is_output(c) &&
@@ -393,8 +501,8 @@ class OutputsDiagnosis {
     const bool named = !result_.effects.empty(), few = campaign_.batches.size() < options_.shared.proving_folds;
     if (named && few)
       for (FoundEffect& one : result_.effects) one.confidence = std::min(one.confidence, .5);
-    const bool rivals = named && !result_.effects[0].alternatives.empty();
-    result_.verdict = !named ? unnamed : few || rivals ? Verdict::ambiguous : Verdict::effect;
+    const bool unsure = named && (!result_.effects[0].alternatives.empty() || result_.effects[0].confidence < .5);
+    result_.verdict = !named ? unnamed : few || unsure ? Verdict::ambiguous : Verdict::effect;
     tell(beside);
   }
 
@@ -416,8 +524,10 @@ class OutputsDiagnosis {
     result_.remaining = views.remaining(result_.gap.rms, options_.seed);
     for (DataProblem& one : pairing_problems(campaign_)) result_.data_problems.push_back(std::move(one));
     result_.weaker_claims = claims_of_outputs<Scalar>(campaign_, beside);
-    result_.next_experiment =
-        named ? experiment_by_kind(result_.effects[0], library_, hours) : experiment_without_rivals(result_, hours);
+    result_.next_experiment = named ? experiment_by_kind(result_.effects[0], library_, hours)
+                              : result_.suspected.empty()
+                                  ? experiment_without_rivals(result_, hours)
+                                  : experiment_for_suspect(result_.suspected[0], library_, hours);
     for (PlannedBlock& block : result_.next_experiment.plan)
       if (block.kind == ScheduleKind::toggle && !is_set(block.subject))
         block = block_that_shows(ScheduleKind::idle_day, "", block.machine_hours);
@@ -442,6 +552,7 @@ class OutputsDiagnosis {
   std::vector<PairedChannel> first_;  ///< with calibration alone
   OutputScan scan_;
   Stage stage_ = Stage::heat;
+  Leader leader_;   ///< of the first round
   Index told_ = 0;  ///< the channel the gap is told for: the effect's own where it acts on one, else the headline
   Diagnosis result_;
 };

@@ -137,6 +137,17 @@ inline NextExperiment experiment_by_kind(const FoundEffect& found, const EffectL
   return result;
 }
 
+/// A plan without a network for an effect that is only suspected: what shows it by itself.
+inline NextExperiment experiment_for_suspect(const FoundEffect& suspect, const EffectLibrary& library,
+                                             double batch_hours) {
+  NextExperiment result = detail::without_forecast();
+  result.separates = {{suspect.effect, suspect.location, suspect.driver, suspect.confidence}};
+  result.plan = {
+      library.at(suspect.effect).shown_by({suspect.effect, suspect.location, suspect.driver, {}}, batch_hours)};
+  result.remark = NextExperiment::Remark::not_foreseeable;
+  return result;
+}
+
 namespace detail {
 
 /// By how much the share of the gap must exceed that of the time for a condition to be worth a schedule.
