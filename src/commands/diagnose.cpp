@@ -22,7 +22,8 @@ With a machine file, the simulator is the lumped network that it describes: ever
 With --sim, the simulator is anybody's: only its output is read, one file a batch with the same names as the measured ones. Effects then act through the traces they leave in the outputs.
 
 First the two sides are compared: a column in another unit, with the other sign, exchanged or copied, and a clock that is off are data problems; where one is certain, it is told with what to write, and no effect is looked for. A probe that counts from another zero in some batches is told and its zero left free. Options of the batches hold for the simulator's output too, unless its own (--sim-…) are given. Single cells that are no readings are left out and told.
-The report gives one sentence first, then what was ruled out and why, what could not be told apart, the next experiment, data problems, and tables.
+The report gives one sentence first, then what is only suspected and how probable it is, what was ruled out and why, what could not be told apart, the next experiment, data problems, and tables.
+Verdict unknown may come with a part of the cause: something acts there beyond doubt, but the rest of the gap has no name. Neither a part nor a suspicion is a name; --write leaves them out.
 Verdicts: none (no gap), miscalibration (the simulator's own parameters close it), effect, ambiguous (several remain), unknown (real, but nothing in the catalogue closes it).
 Exit codes: 0 none, miscalibration or effect; 1 ambiguous, unknown, or sides that are not written down alike; 2 could not be done.)";
 

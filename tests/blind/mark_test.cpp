@@ -56,6 +56,31 @@ TEST_CASE("an effect listed under the verdict unknown is not named") {
   CHECK_FALSE(seen.in_set);
 }
 
+TEST_CASE("the truth as a part of the cause or a suspicion is within what is told, and no name") {
+  for (const char* grade : {"parts", "suspected"}) {
+    Json document = report("unknown", "[]");
+    document[grade] = Json::parse(R"([{"effect": "coolant", "location": "head_tip", "confidence": 0.4}])");
+    const auto seen = mark(one_effect(), document);
+    CHECK_FALSE(seen.named);
+    CHECK_FALSE(seen.in_set);
+    CHECK(seen.within);
+    CHECK_FALSE(seen.confident_wrong);
+    REQUIRE(seen.suspicions.size() == 1);
+    CHECK(seen.suspicions[0].right);
+  }
+}
+
+TEST_CASE("another simulator's outputs show a place by the thermometer on it, or by those next to it") {
+  const Json machine = Json::parse(R"({"nodes": [{"name": "head_front"}, {"name": "head_tip"}, {"name": "bed"}],
+      "links": [{"between": ["head_front", "bed"]}], "heat_sources": [{"input": "rpm"}],
+      "sensors": {"T1": {"node": "bed"}, "T2": {"node": "head_tip"}}})");
+  Truth truth = one_effect();
+  CHECK(acceptable(seen_in_outputs(truth, machine).effects[0].locations, "T2"));
+  CHECK_FALSE(acceptable(seen_in_outputs(truth, machine).effects[0].locations, "T1"));
+  truth.effects[0].locations = {"head_front"};
+  CHECK(acceptable(seen_in_outputs(truth, machine).effects[0].locations, "T1"));
+}
+
 TEST_CASE("of a pair both must be found") {
   Truth truth = one_effect();
   truth.effects.push_back({{"speed-shift"}, {"displacement"}});

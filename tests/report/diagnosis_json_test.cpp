@@ -87,3 +87,17 @@ TEST_CASE("each verdict prints its own word", "[report]") {
     CHECK(document_of(diagnosis)["verdict"] == word);
   }
 }
+
+TEST_CASE("parts of the cause and suspicions stand under their own keys, with the share that they close", "[report]") {
+  Diagnosis diagnosis = example();
+  diagnosis.verdict = Verdict::unknown;
+  FoundEffect found = diagnosis.effects[0];
+  found.closes = .64;
+  diagnosis.effects = {};
+  diagnosis.parts = {found};
+  const auto json = document_of(diagnosis);
+  CHECK(json["effects"].empty());
+  CHECK(json["parts"][0]["effect"] == "friction-law");
+  CHECK(json["parts"][0]["closes"] == .64);
+  CHECK(json["suspected"].empty());
+}

@@ -19,12 +19,14 @@ struct Mark {
   bool failed = false;  ///< no document: crash, time out, refusal
   std::string verdict, said;
   bool verdict_right = false;
-  bool named = false;            ///< any effect is named
-  bool top = false;              ///< every true effect is named first (or as one of the found)
-  bool in_set = false;           ///< every true effect is among what is reported, alternatives included
-  bool place = false;            ///< and at an acceptable place, or a declared set that holds one
-  bool confident_wrong = false;  ///< a name that is not true, stated above 50 %
-  std::vector<Claim> claims;
+  bool named = false;             ///< any effect is named
+  bool top = false;               ///< every true effect is named first (or as one of the found)
+  bool in_set = false;            ///< every true effect is among what is named, alternatives included
+  bool within = false;            ///< the same with parts of the cause and suspicions
+  bool place = false;             ///< and at an acceptable place, or a declared set that holds one
+  bool confident_wrong = false;   ///< a name that is not true, stated above 50 %
+  std::vector<Claim> claims;      ///< of names
+  std::vector<Claim> suspicions;  ///< of parts of the cause and suspicions; right: the name
   double calibrated = NAN, with_effect = NAN, shrink_percent = NAN;
   std::optional<std::pair<double, double>> interval;
   double oracle_shrink_percent = NAN, seconds = NAN;
@@ -93,6 +95,21 @@ inline Mark mark(const Truth& truth, const Json& document) {
     mark.in_set = mark.in_set && in_set;
     mark.place = mark.place && place;
   }
+  mark.within = !truth.effects.empty();
+  for (const TrueEffect& effect : truth.effects) {
+    bool told = false;
+    for (const char* grade : {"effects", "parts", "suspected"})
+      for (const Json& one : document.value(grade, Json::array())) {
+        told = told || names_effect(one, effect);
+        for (const Json& rival : one.value("alternatives", Json::array())) told = told || names_effect(rival, effect);
+      }
+    mark.within = mark.within && told;
+  }
+  for (const char* grade : {"parts", "suspected"})
+    for (const Json& one : document.value(grade, Json::array()))
+      mark.suspicions.push_back({one.value("confidence", 0.),
+                                 std::any_of(truth.effects.begin(), truth.effects.end(),
+                                             [&](const TrueEffect& effect) { return names_effect(one, effect); })});
   for (const Json& one : found) {
     const auto fits = [&](const TrueEffect& effect) { return names_effect(one, effect); };
     const auto fits_there = [&](const TrueEffect& effect) { return fits(effect) && names_place(one, effect); };

@@ -42,7 +42,8 @@ struct Runner {
   std::string program;                 ///< the thermfit command, or a baseline
   std::vector<std::string> arguments;  ///< before the machine: `diagnose`, or the baseline's name
   fs::path results;
-  bool fresh = false;  ///< measure the shrink on fresh batches too: needs --write and the calibrate command
+  bool by_outputs = false;  ///< the machine's simulated batches instead of the machine: diagnose --sim
+  bool fresh = false;       ///< measure the shrink on fresh batches too: needs --write and the calibrate command
   int seconds_allowed = 120;
 
   /// The document for one case, from `results` when it is newer than the program and the case; nothing on failure.
@@ -55,8 +56,9 @@ struct Runner {
       const fs::path part = kept.string() + ".part";
       std::string line = "timeout " + std::to_string(seconds_allowed) + " " + quoted(program);
       for (const std::string& word : arguments) line += " " + quoted(word);
-      line += " " + quoted((one.folder / "machine.json").string());
-      for (const fs::path& file : batches_in(one.folder / "real")) line += " " + quoted(file.string());
+      line += by_outputs ? " --sim " + quoted(simulated(one).string())
+                         : " " + quoted((one.folder / "machine.json").string());
+      line += real_batches(one);
       line += " --json";
       for (const std::string& word : options) line += " " + quoted(word);
       line += " > " + quoted(part.string()) + " 2> " + quoted((results / (one.name + what + ".err")).string());
@@ -77,6 +79,23 @@ struct Runner {
     } catch (const std::exception&) {
       return std::nullopt;
     }
+  }
+
+  static std::string real_batches(const Case& one) {
+    std::string words;
+    for (const fs::path& file : batches_in(one.folder / "real")) words += " " + quoted(file.string());
+    return words;
+  }
+
+  /// The folder of the batches as the machine of the case simulates them, made when it is not there.
+  fs::path simulated(const Case& one) const {
+    const fs::path folder = results / (one.name + ".sim");
+    if (!fs::exists(folder)) {
+      const std::string line = quoted(program) + " simulate " + quoted((one.folder / "machine.json").string()) +
+                               real_batches(one) + " --output-folder " + quoted(folder.string()) + " > /dev/null 2>&1";
+      if (std::system(line.c_str()) != 0) fs::remove_all(folder);
+    }
+    return folder;
   }
 
   std::string written(const Case& one) const { return (results / (one.name + ".machine.json")).string(); }
@@ -107,7 +126,8 @@ struct Runner {
     mark.failed = true;
     if (const auto found = document(one, "", options, seconds)) {
       try {
-        mark = blind::mark(one.truth, *found);
+        mark = blind::mark(by_outputs ? seen_in_outputs(one.truth, read_json(one.folder / "machine.json")) : one.truth,
+                           *found);
       } catch (const std::exception& error) {
         mark.said = error.what();
       }

@@ -14,7 +14,7 @@ struct Options {
   std::vector<std::string> demands;  ///< `top1>=.9`
   int jobs = 2;
   std::size_t first = 1, count = 100000;
-  bool oracle = false, each = false;
+  bool oracle = false, each = false, both_ways = false;
 };
 
 Options parse(const std::vector<std::string>& words) {
@@ -51,6 +51,8 @@ Options parse(const std::vector<std::string>& words) {
       options.runner.fresh = true;
     else if (word == "--each")
       options.each = true;
+    else if (word == "--both-ways")
+      options.both_ways = true;
     else if (word == "--require")
       options.demands.push_back(value());
     else if (word.rfind("--", 0) == 0)
@@ -76,20 +78,14 @@ bool meets(const std::map<std::string, double>& figures, const std::string& dema
   return demand[cut] == '<' ? value <= *bound : value >= *bound;
 }
 
-int run(const Options& options) {
-  std::vector<blind::Case> cases;
-  for (const std::string& folder : options.folders)
-    for (const blind::Case& one : blind::find_cases(folder)) cases.push_back(one);
-  if (options.first > 1)
-    cases.erase(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(std::min(cases.size(), options.first - 1)));
-  if (cases.size() > options.count) cases.resize(options.count);
-  if (cases.empty()) throw std::runtime_error("no cases found");
-
+/// Diagnoses the cases one way and, where asked for, prints a line each.
+blind::Summary scored(const std::vector<blind::Case>& cases, const blind::Runner& runner, const Options& options) {
   std::mutex lock;
-  const auto marks = blind::judge_all(cases, options.runner, options.oracle, options.jobs, [&](std::size_t done) {
-    const std::lock_guard<std::mutex> guard(lock);
-    if (done % 20 == 0) std::cerr << "thermfit_blind_score: " << done << " of " << cases.size() << "\n";
-  });
+  const auto marks =
+      blind::judge_all(cases, runner, options.oracle && !runner.by_outputs, options.jobs, [&](std::size_t done) {
+        const std::lock_guard<std::mutex> guard(lock);
+        if (done % 20 == 0) std::cerr << "thermfit_blind_score: " << done << " of " << cases.size() << "\n";
+      });
   blind::Summary summary;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     summary.add(cases[i].truth, marks[i]);
@@ -100,6 +96,7 @@ int run(const Options& options) {
               << (good          ? "  ok    "
                   : mark.failed ? "  FAIL  "
                   : mark.in_set ? "  set   "
+                  : mark.within ? "  told  "
                                 : "  wrong ")
               << cases[i].truth.family << (cases[i].truth.detectable ? "" : " (hidden)") << ": " << mark.verdict << " "
               << mark.said << (mark.claims.empty() ? "" : " " + thermfit::fixed_text(mark.claims[0].confidence, 2))
@@ -110,7 +107,31 @@ int run(const Options& options) {
     if (mark.fresh) std::cout << ", fresh " << thermfit::fixed_text(mark.fresh->percent, 0);
     std::cout << "\n";
   }
-  std::cout << blind::text_of(summary);
+  return summary;
+}
+
+int run(const Options& options) {
+  std::vector<blind::Case> cases;
+  for (const std::string& folder : options.folders)
+    for (const blind::Case& one : blind::find_cases(folder)) cases.push_back(one);
+  if (options.first > 1)
+    cases.erase(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(std::min(cases.size(), options.first - 1)));
+  if (cases.size() > options.count) cases.resize(options.count);
+  if (cases.empty()) throw std::runtime_error("no cases found");
+
+  const blind::Summary summary = scored(cases, options.runner, options);
+  std::vector<std::pair<std::string, const blind::Summary*>> ways{{"by the network", &summary}};
+  blind::Summary outputs;
+  if (options.both_ways) {
+    blind::Runner runner = options.runner;
+    runner.by_outputs = true;
+    runner.fresh = false;
+    runner.results /= "outputs";
+    std::cout << blind::families_text(summary) << "\n";
+    outputs = scored(cases, runner, options);
+    ways.emplace_back("by outputs (--sim)", &outputs);
+  }
+  std::cout << blind::families_text(options.both_ways ? outputs : summary) << "\n" << blind::totals_text(ways);
   const auto figures = summary.figures();
   blind::Json kept = blind::Json::object();
   for (const auto& [name, value] : figures) kept[name] = std::isfinite(value) ? blind::Json(value) : blind::Json();

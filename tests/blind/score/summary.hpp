@@ -42,10 +42,10 @@ inline double calibration_error(const std::vector<Claim>& claims) {
 }
 
 struct Summary {
-  Share top, in_set, place, pair_top, unknown, none_right, miscalibration_right, hidden_honest;
+  Share top, in_set, within, place, pair_top, unknown, none_right, miscalibration_right, hidden_honest;
   Share false_alarm_none, false_alarm_miscalibration, coverage, confident_wrong, harm;
   std::vector<double> against_oracle, shrinks, seconds;
-  std::vector<Claim> claims;
+  std::vector<Claim> claims, suspicions;
   int failed = 0;
   std::map<std::string, std::array<Share, 5>> by_family;  ///< detectable, top, set, place, verdict
 
@@ -57,6 +57,7 @@ struct Summary {
     if (std::isfinite(mark.seconds)) seconds.push_back(mark.seconds);
     confident_wrong.add(mark.confident_wrong);
     claims.insert(claims.end(), mark.claims.begin(), mark.claims.end());
+    suspicions.insert(suspicions.end(), mark.suspicions.begin(), mark.suspicions.end());
     if (truth.verdict == "none") {
       none_right.add(mark.verdict_right);
       false_alarm_none.add(mark.failed || mark.named || mark.verdict == "unknown");
@@ -74,6 +75,7 @@ struct Summary {
     } else {
       (truth.effects.size() > 1 ? pair_top : top).add(mark.top);
       in_set.add(mark.in_set);
+      within.add(mark.within);
       if (mark.in_set) place.add(mark.place);
       first.add(mark.top);
       set.add(mark.in_set);
@@ -95,6 +97,7 @@ struct Summary {
   std::map<std::string, double> figures() const {
     return {{"top1", top.value()},
             {"in_set", in_set.value()},
+            {"within", within.value()},
             {"place", place.value()},
             {"pairs_top", pair_top.value()},
             {"unknown", unknown.value()},
@@ -109,48 +112,71 @@ struct Summary {
             {"shrink_of_oracle", median(against_oracle)},
             {"interval_coverage", coverage.value()},
             {"calibration_error", calibration_error(claims)},
+            {"suspicions", static_cast<double>(suspicions.size())},
+            {"suspicion_calibration_error", calibration_error(suspicions)},
             {"seconds_median", median(seconds)},
             {"seconds_longest", seconds.empty() ? NAN : *std::max_element(seconds.begin(), seconds.end())},
             {"failed", static_cast<double>(failed)}};
   }
 };
 
-inline std::string text_of(const Summary& summary) {
-  using thermfit::fixed_text;
+/// How the cases of each effect went.
+inline std::string families_text(const Summary& summary) {
   thermfit::cli::Table families({"effect", "cases", "detectable", "first", "in set", "place", "verdict"});
   for (const auto& [name, shares] : summary.by_family) {
     const auto& [seen, first, set, at, verdict] = shares;
     families.add({name, std::to_string(seen.of), std::to_string(seen.right), first.text(), set.text(), at.text(),
                   verdict.text()});
   }
-  const auto percent = [](const Share& share) {
-    return share.of ? share.text() + "  " + fixed_text(100 * share.value(), 1) + " %" : std::string("-");
+  return families.text();
+}
+
+/// Over all cases, a column each way of diagnosing them.
+inline std::string totals_text(const std::vector<std::pair<std::string, const Summary*>>& ways) {
+  std::vector<std::string> heads{"over all"};
+  for (const auto& way : ways) heads.push_back(way.first);
+  thermfit::cli::Table totals(heads);
+  const auto row = [&](const std::string& name, const auto& cell) {
+    std::vector<std::string> cells{name};
+    for (const auto& way : ways) cells.push_back(cell(*way.second));
+    totals.add(cells);
   };
-  const auto figures = summary.figures();
-  const auto number = [&](const char* name, int decimals, double scale = 1) {
-    const double value = figures.at(name);
-    return std::isfinite(value) ? fixed_text(scale * value, decimals) : std::string("-");
+  const auto share = [&](const std::string& name, Share Summary::*member) {
+    row(name, [&](const Summary& summary) {
+      const Share& one = summary.*member;
+      return one.of ? one.text() + "  " + thermfit::fixed_text(100 * one.value(), 1) + " %" : std::string("-");
+    });
   };
-  thermfit::cli::Table totals({"over all", ""});
-  totals.add({"single effect first (detectable)", percent(summary.top)});
-  totals.add({"both of a pair found", percent(summary.pair_top)});
-  totals.add({"truth inside what is reported", percent(summary.in_set)});
-  totals.add({"place right, of those", percent(summary.place)});
-  totals.add({"false alarms on none", percent(summary.false_alarm_none)});
-  totals.add({"false alarms on miscalibration", percent(summary.false_alarm_miscalibration)});
-  totals.add({"verdict none right", percent(summary.none_right)});
-  totals.add({"verdict miscalibration right", percent(summary.miscalibration_right)});
-  totals.add({"unknown recognised", percent(summary.unknown)});
-  totals.add({"hidden or one-speed: no confident wrong name", percent(summary.hidden_honest)});
-  totals.add({"a wrong name stated above 50 %", percent(summary.confident_wrong)});
-  totals.add({"worse with the effect than without", percent(summary.harm)});
-  totals.add({"median shrink", number("shrink_median_percent", 1) + " %"});
-  totals.add({"median shrink, of the oracle's", number("shrink_of_oracle", 1, 100) + " %"});
-  totals.add({"interval agrees with the shrink on fresh batches", percent(summary.coverage)});
-  totals.add({"calibration error of the confidence", number("calibration_error", 3)});
-  totals.add({"time, median and longest", number("seconds_median", 2) + " s, " + number("seconds_longest", 2) + " s"});
-  totals.add({"no answer", std::to_string(summary.failed)});
-  return families.text() + "\n" + totals.text();
+  const auto number = [&](const std::string& name, const char* figure, int decimals, const char* unit = "",
+                          double scale = 1) {
+    row(name, [&](const Summary& summary) {
+      const double value = summary.figures().at(figure);
+      return std::isfinite(value) ? thermfit::fixed_text(scale * value, decimals) + unit : std::string("-");
+    });
+  };
+  share("single effect first (detectable)", &Summary::top);
+  share("both of a pair found", &Summary::pair_top);
+  share("truth within what is named", &Summary::in_set);
+  share("truth within names, parts and suspicions", &Summary::within);
+  share("place right, of those named", &Summary::place);
+  share("false alarms on none", &Summary::false_alarm_none);
+  share("false alarms on miscalibration", &Summary::false_alarm_miscalibration);
+  share("verdict none right", &Summary::none_right);
+  share("verdict miscalibration right", &Summary::miscalibration_right);
+  share("unknown recognised", &Summary::unknown);
+  share("hidden or one-speed: no confident wrong name", &Summary::hidden_honest);
+  share("a wrong name stated above 50 %", &Summary::confident_wrong);
+  share("worse with the effect than without", &Summary::harm);
+  number("median shrink", "shrink_median_percent", 1, " %");
+  number("median shrink, of the oracle's", "shrink_of_oracle", 1, " %", 100);
+  share("interval agrees with the shrink on fresh batches", &Summary::coverage);
+  number("calibration error of the confidence", "calibration_error", 3);
+  number("parts and suspicions told", "suspicions", 0);
+  number("calibration error of their probability", "suspicion_calibration_error", 3);
+  number("time, median, s", "seconds_median", 2);
+  number("time, longest, s", "seconds_longest", 2);
+  number("no answer", "failed", 0);
+  return totals.text();
 }
 
 }  // namespace blind

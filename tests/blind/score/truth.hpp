@@ -40,6 +40,39 @@ inline Json read_json(const std::filesystem::path& path) {
   return Json::parse(file);
 }
 
+/// The truth as another simulator's outputs can show it: a place is a thermometer on it, or next to it where it has
+/// none; a link is any two of them, a source is one.
+inline Truth seen_in_outputs(Truth truth, const Json& machine) {
+  const auto on = [&](const std::vector<std::string>& nodes) {
+    std::vector<std::string> columns;
+    for (const auto& [column, sensor] : machine.at("sensors").items())
+      if (std::find(nodes.begin(), nodes.end(), sensor.value("node", "")) != nodes.end()) columns.push_back(column);
+    return columns;
+  };
+  for (TrueEffect& effect : truth.effects) {
+    std::vector<std::string> nodes, beside;
+    for (const Json& node : machine.at("nodes")) {
+      const std::string name = node.at("name");
+      for (const std::string& place : effect.locations)
+        if (place.find(name) != std::string::npos) nodes.push_back(name);
+    }
+    if (on(nodes).empty())
+      for (const Json& link : machine.at("links")) {
+        const std::string a = link.at("between").at(0), b = link.at("between").at(1);
+        for (const std::string& node : nodes)
+          if (node == a || node == b) beside.push_back(node == a ? b : a);
+      }
+    const std::vector<std::string> columns = on(on(nodes).empty() ? beside : nodes);
+    for (const std::string& one : columns) {
+      effect.locations.push_back(one);
+      for (const std::string& other : columns) effect.locations.push_back(one + "-" + other);
+    }
+    for (const Json& source : machine.value("heat_sources", Json::array()))
+      effect.locations.push_back("source driven by " + source.value("input", ""));
+  }
+  return truth;
+}
+
 /// Left after calibration, in units of the floor, from which an effect counts as detectable.
 constexpr double detectable_from = 8;
 

@@ -109,3 +109,62 @@ TEST_CASE("a machine is miscalibrated when calibration closes the gap, not when 
   found.calibrated.held.residual = constant(1, 1);
   CHECK(verdict_of_calibration(found, {}) == Verdict::none);
 }
+
+TEST_CASE("the best account of what a machine lacks too little to be named by is suspected, at even odds at most") {
+  SearchResult found = lagging({0.5, 0.5, 0.5, 0.5}, 40);
+  found.screened.resize(600);
+  for (Vector& one : found.calibrated.held.residual[0]) one.setConstant(0.8);
+  const Judgement result = judged(found);
+  CHECK(result.effects.empty());
+  CHECK(result.suspicions.parts.empty());
+  REQUIRE(result.suspicions.suspected.size() == 1);
+  const FoundEffect& suspect = result.suspicions.suspected[0];
+  CHECK(suspect.effect == "sensor-lag");
+  CHECK(suspect.confidence > 0.3);
+  CHECK(suspect.confidence <= 0.5);
+  CHECK(suspect.closes == 1);
+  CHECK(result.levels.with_effect[0][1] == result.levels.calibrated[0][1]);
+}
+
+TEST_CASE("what a machine that lacks nothing gains is not suspected, nor what leaves more than it should") {
+  SearchResult chance = lagging({0.5, 0.5, 0.5, 0.5}, 3);
+  chance.screened.resize(600);
+  for (Vector& one : chance.calibrated.held.residual[0]) one.setConstant(0.6);
+  CHECK(judged(chance).suspicions.suspected.empty());
+  SearchResult leaves = lagging({2, 2, 2, 2}, 30);
+  leaves.screened.resize(600);
+  CHECK(judged(leaves).suspicions.suspected.empty());
+}
+
+TEST_CASE("strong evidence that leaves much is a part of the cause, and the gap keeps having no name") {
+  SearchResult found = lagging({2, 2.1, 1.9, 2}, 200);
+  const Judgement result = judged(found);
+  CHECK(result.verdict == Verdict::unknown);
+  CHECK(result.effects.empty());
+  REQUIRE(result.suspicions.parts.size() == 1);
+  CHECK(result.suspicions.parts[0].location == "T1");
+  CHECK(result.suspicions.parts[0].closes == Approx(1 - (15.0 / 63)).margin(0.02));
+  CHECK(result.suspicions.parts[0].confidence <= 0.5);
+  CHECK(result.suspicions.suspected.empty());
+}
+
+TEST_CASE("an account that helps some batches and harms others is no part of the cause") {
+  CHECK(judged(lagging({0.2, 6, 0.2, 6}, 200)).suspicions.parts.empty());
+}
+
+TEST_CASE("a second effect short of a name is suspected beside the first") {
+  SearchResult found = lagging({0.7, 0.7, 0.7, 0.7}, 100);
+  Account pair = found.single[0];
+  pair.effects.push_back({"sensor-gain", "T1", "", {{"gain", 0.1}}});
+  pair.fit.prior.effects = pair.effects;
+  pair.fit.log_evidence = 104;
+  pair.held.by_channel = Vector::Constant(1, 104);
+  for (Vector& one : pair.held.residual[0]) one.setConstant(0.5);
+  found.several = {pair};
+  const Judgement result = judged(found);
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].effect == "sensor-lag");
+  REQUIRE(result.suspicions.suspected.size() == 1);
+  CHECK(result.suspicions.suspected[0].effect == "sensor-gain");
+  CHECK(result.suspicions.suspected[0].confidence <= 0.5);
+}
