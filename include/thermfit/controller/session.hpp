@@ -13,11 +13,13 @@ template <class Scalar, int Features, int Lags>
 struct RetainedSession {
   Row<Scalar, Lags> lag_degC{};       ///< where each lag was; NaN: not known
   Row<Scalar, Lags> lag_zero_degC{};  ///< and where at the zero
-  Scalar climate_degC = 0;            ///< mean temperature where the session began
+  Scalar climate_degC =
+      std::numeric_limits<Scalar>::quiet_NaN();  ///< mean temperature where the session began; NaN: there is none
 
-  /// Calls `see` with each number.
+  /// Calls `see` with each number; of a model whose features are none, as a dynamic one may have, with none.
   template <class See>
   void each(See see) const noexcept {
+    if (lag_degC.empty() && !is_finite(climate_degC)) return;
     for (const Scalar value : lag_degC) see(value);
     for (const Scalar value : lag_zero_degC) see(value);
     see(climate_degC);
@@ -70,7 +72,7 @@ class Session {
       present_[k] = Place{};
       zero_degC_[k] = 0;
     }
-    climate_degC_ = 0;
+    climate_degC_ = std::numeric_limits<Scalar>::quiet_NaN();
     begun_ = asleep_ = 0;
   }
 
@@ -101,7 +103,7 @@ class Session {
   void settle(const Model& model, const Guard& guard, std::uint32_t samples) noexcept {
     for (std::size_t k = 0; k < lags_.size(); ++k)
       if (guard.fault(model.features.lag_sensor[k]) == SensorFault::none) lags_[k] = Lag{present_[k], 0, true};
-    if (begun_ > 0) return;
+    if (begun_ > 0 || model.features.channels.empty()) return;
     bool complete = true;
     Scalar sum = 0, used = 0;
     for (std::size_t i = 0; i < model.sensors(); ++i) {
@@ -181,7 +183,7 @@ class Session {
   Row<Lag, Lags> lags_{};
   Row<Place, Lags> present_{};
   Row<Scalar, Lags> zero_degC_{};
-  Scalar climate_degC_ = 0;
+  Scalar climate_degC_ = std::numeric_limits<Scalar>::quiet_NaN();
   std::uint32_t taken_ = 0, begun_ = 0, asleep_ = 0;
 };
 
