@@ -186,10 +186,10 @@ std::vector<Plant> plants() {
        },
        Kind::copied},
       {"another zero in a batch",
-       [](Campaign& c, const Campaign&, std::uint64_t& s) {
-         Batch& batch = c[drawn(s, c.size())];
+       [](Campaign& c, const Campaign&, std::uint64_t&) {
+         Batch& batch = c[c.size() / 2];
          if (batch.errors.find("Z") < 0) return std::vector<std::string>{};
-         batch.errors.values.col(batch.errors.find("Z")).array() += 200 * symmetric_uniform(s) + 250;
+         batch.errors.values.col(batch.errors.find("Z")).array() += 250;
          return std::vector<std::string>{"Z"};
        },
        Kind::datum},

@@ -59,6 +59,14 @@ TEST_CASE("shares of a factor add up to one, and a factor that never changes is 
   CHECK(find(shares, "batch", "K02")->share == Approx(.8));
 }
 
+TEST_CASE("only an input that is held at levels can be set, no temperature of the room and nothing that is measured") {
+  const Vector course = Vector::LinSpaced(50, 0, 9), steps = (course.array() / 3).floor();
+  for (const ConditionShare& share : condition_shares({batch_of("K01", steps, course, course)}, {course}, "T1")) {
+    INFO(share.factor);
+    CHECK(share.settable == (share.factor == "spindle_rpm"));
+  }
+}
+
 TEST_CASE("warm-up, steady and cool-down follow the slope of the mean temperature", "[gap]") {
   Vector room(300);
   for (int i = 0; i < 300; ++i) room(i) = i < 100 ? .1 * i : i < 200 ? 10 : 10 - .1 * (i - 200);

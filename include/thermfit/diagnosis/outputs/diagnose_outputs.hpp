@@ -540,7 +540,7 @@ class OutputsDiagnosis {
     HeldLevels held;
     for (const PairedBatch& batch : campaign_.batches)
       count_held(held, batch.inputs.col(at - campaign_.inputs.begin()));
-    return held.is_set();
+    return thermfit::is_set(std::move(held));
   }
 
   const OutputsOptions& options_;

@@ -71,7 +71,7 @@ class Menu {
                              [&](Index input, double share) { return input == main_ && share < 1. / 3 ? top : 0.; }));
       for (Index other = 0; other < static_cast<Index>(largest_.size()); ++other)
         if (other != main_ && largest_[static_cast<std::size_t>(other)] != 0 &&
-            held_[static_cast<std::size_t>(other)].is_set())
+            is_set(held_[static_cast<std::size_t>(other)]))
           menu.push_back(of_another(other, top));
     }
     menu.push_back(planned(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thermfit/batch/batch.hpp"
@@ -69,6 +70,7 @@ void add_factor(const std::string& name, const Campaign& batches, const std::vec
                 bool input, std::vector<ConditionShare>& result) {
   HeldLevels held;
   for (const Batch& batch : batches) count_held(held, column(batch));
+  const bool settable = input && is_set(std::move(held));
   std::vector<double> values;
   for (const Batch& batch : batches)
     for (Index row = 0; row < batch.rows(); ++row) values.push_back(column(batch)(row));
@@ -77,7 +79,7 @@ void add_factor(const std::string& name, const Campaign& batches, const std::vec
   const bool on_off = levels.size() == 2 && levels[0].low == 0 && levels[0].high == 0;
   std::vector<ConditionShare> rows;
   for (std::size_t k = 0; k < levels.size(); ++k)
-    rows.push_back({name, on_off ? (k ? "on" : "off") : "", !on_off, input && held.is_set(), levels[k], 0, 0, 0});
+    rows.push_back({name, on_off ? (k ? "on" : "off") : "", !on_off, settable, levels[k], 0, 0, 0});
   ShareTable table(std::move(rows));
   for (std::size_t b = 0; b < batches.size(); ++b)
     for (Index row = 0; row < residuals[b].size(); ++row)
