@@ -56,23 +56,37 @@ std::vector<Option> options() {
   return all;
 }
 
-/// What a machine may lack where its own numbers do not suffice: the candidates of the catalogue that promise most, by
-/// one linear step together with calibration, each effect once. The step begins at the machine as given: a failed
-/// calibration has bent its numbers to hide what is missing.
-std::vector<ThermalNetwork::AddedEffect> suspects(const ThermalNetwork& machine, const MachineRecord& seen,
-                                                  const Campaign& campaign, const EffectLibrary& effects) {
+/// Gain of each effect where it promises most by one linear step together with calibration, most first: only what is
+/// worth a suspicion.
+std::vector<Candidate> promising(const MapFit& fit, const MachineRecord& seen, const Campaign& campaign,
+                                 const EffectLibrary& effects) {
   constexpr double worth_nats = 5;  // a suspicion, no name
+  const ScreeningBase<> base(seen, fit, effects, fit.prior.effects.size());
+  std::vector<Candidate> result;
+  for (Candidate& one : screen(base, effects, effects.candidates(setting_of(fit.prior, campaign)), 0))
+    if (one.gain > worth_nats && std::none_of(result.begin(), result.end(), [&](const Candidate& other) {
+          return other.added.effect == one.added.effect;
+        }))
+      result.push_back(std::move(one));
+  return result;
+}
+
+/// What a machine may lack where its own numbers do not suffice: effects that promise something even after calibration,
+/// at the places where the machine as given lacks them most. A failed calibration has bent its numbers to hide what is
+/// missing, so that it is no good for the place.
+std::vector<ThermalNetwork::AddedEffect> suspects(const Calibration& calibration, const ThermalNetwork& machine,
+                                                  const MachineRecord& seen, const Campaign& campaign,
+                                                  const EffectLibrary& effects) {
+  const std::vector<Candidate> left = promising(calibration.fit, seen, campaign, effects);
+  if (left.empty()) return {};
   MapFitOptions as_given;
   as_given.most_iterations = 0;
-  const MapFit fit = map_fit(seen, machine, effects, as_given);
-  const ScreeningBase<> base(seen, fit, effects, fit.prior.effects.size());
-  const std::vector<ThermalNetwork::AddedEffect> candidates = effects.candidates(setting_of(fit.prior, campaign));
   std::vector<ThermalNetwork::AddedEffect> result;
-  for (const Candidate& one : screen(base, effects, candidates, 0)) {
-    const bool known =
-        std::any_of(result.begin(), result.end(), [&](const auto& other) { return other.effect == one.added.effect; });
-    if (one.gain > worth_nats && !known && result.size() < 3) result.push_back(one.added);
-  }
+  for (const Candidate& one : promising(map_fit(seen, machine, effects, as_given), seen, campaign, effects))
+    if (result.size() < 3 && std::any_of(left.begin(), left.end(), [&](const Candidate& other) {
+          return other.added.effect == one.added.effect;
+        }))
+      result.push_back(one.added);
   return result;
 }
 
@@ -117,7 +131,7 @@ Exit run(const Arguments& arguments, Console& console) {
   const Calibration calibration = calibrate(seen, network, effects, how);
   CalibrationVerdict verdict;
   verdict.shortcomings = shortcomings(calibration, seen);
-  if (!verdict.shortcomings.empty()) verdict.suspects = suspects(network, seen, clean.campaign, effects);
+  if (!verdict.shortcomings.empty()) verdict.suspects = suspects(calibration, network, seen, clean.campaign, effects);
   console.progress("");
   if (output && verdict.spoilt() && !arguments.has("--keep-failed"))
     console.note(*output + ": not written: the calibrated machine is not to be believed");
