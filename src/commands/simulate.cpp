@@ -19,7 +19,10 @@ namespace {
 const char* const details =
     "Runs the machine of a thermfit-machine/1 file on the inputs, clock and ambient temperature of each batch. What "
     "the "
-    "batches measured otherwise is not looked at, except first readings where the machine file asks for them.\n"
+    "batches measured otherwise is not looked at, except first readings where the machine file asks for them "
+    "(\"initial\": \"measured\" or \"fitted\", \"ambient\": {\"unmeasured\": true}). Batches that start out of "
+    "equilibrium "
+    "although the file says nothing of it are told.\n"
     "\n"
     "Prints CSV: time_s, the machine's sensors and displacements, then the inputs. Inputs hold their value to the next "
     "sample, ambient is linear between samples, and each step is solved exactly, so that the result does not depend "

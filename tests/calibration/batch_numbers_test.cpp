@@ -10,18 +10,6 @@ using namespace thermfit;
 
 namespace {
 
-/// Every batch without its first rows, the probe zeroed where it now begins.
-Campaign begun_late(Campaign campaign, Index rows) {
-  for (Batch& batch : campaign) {
-    const Index kept = batch.rows() - rows;
-    batch.time_s = Vector(batch.time_s.tail(kept).array() - batch.time_s(rows));
-    for (Channels* one : {&batch.temperatures, &batch.errors, &batch.inputs})
-      one->values = Matrix(one->values.bottomRows(kept));
-    batch.errors.values.rowwise() -= Eigen::RowVectorXd(batch.errors.values.row(0));
-  }
-  return campaign;
-}
-
 /// A room that no column holds.
 Campaign without_room(Campaign campaign) {
   for (Batch& batch : campaign) {
@@ -69,7 +57,7 @@ ThermalNetwork plant() {
 }  // namespace
 
 TEST_CASE("a campaign whose beginnings were not logged calibrates to the machine that it is", "[calibration]") {
-  const Campaign late = begun_late(bench::campaign(plant(), 4, 11), 25);
+  const Campaign late = bench::begun_late(bench::campaign(plant(), 4, 11), 25);
   const ThermalNetwork machine = bench::machine();
   REQUIRE(warm_start(machine, excitations_of(machine, late)));
   const Fitted found = fitted(with_fitted_start(machine), late);

@@ -36,3 +36,9 @@ TEST_CASE("one thermometer off is no warm start, nor are all by as much") {
   }
   CHECK_FALSE(of(campaign));
 }
+
+TEST_CASE("a group of parts that starts off the room by the same is no machine that ran before") {
+  Campaign campaign = bench::campaign(bench::machine(), 3, 7);
+  for (Batch& batch : campaign) batch.temperatures.values.leftCols(2).array() += 5;
+  CHECK_FALSE(of(campaign));
+}

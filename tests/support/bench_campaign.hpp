@@ -104,4 +104,16 @@ inline Campaign campaign(const ThermalNetwork& plant, std::size_t batches, unsig
   return result;
 }
 
+/// Every batch without its first rows, the probe zeroed where it now begins.
+inline Campaign begun_late(Campaign campaign, Index rows) {
+  for (Batch& batch : campaign) {
+    const Index kept = batch.rows() - rows;
+    batch.time_s = Vector(batch.time_s.tail(kept).array() - batch.time_s(rows));
+    for (Channels* one : {&batch.temperatures, &batch.errors, &batch.inputs})
+      one->values = Matrix(one->values.bottomRows(kept));
+    batch.errors.values.rowwise() -= Eigen::RowVectorXd(batch.errors.values.row(0));
+  }
+  return campaign;
+}
+
 }  // namespace bench

@@ -211,28 +211,6 @@ inline void require_courses(const Campaign& real) {
 
 }  // namespace detail
 
-namespace detail {
-
-/// Whether the starts of a campaign that begins warm are no effect's: fitted batch by batch they make the data more
-/// probable than whatever initial gradient does.
-template <typename Scalar = double>
-bool starts_are_free(const ThermalNetwork& machine, const Campaign& real, const EffectLibrary& library,
-                     const SearchOptions& options) {
-  const auto evidence = [&](const ThermalNetwork& network, const std::vector<ThermalNetwork::AddedEffect>& candidates) {
-    const SearchResult found = search(network, real, library, candidates, options);
-    double best = found.calibrated.fit.log_evidence;
-    for (const auto* accounts : {&found.single, &found.several})
-      for (const Account& one : *accounts) best = std::max(best, one.fit.log_evidence);
-    return best;
-  };
-  std::vector<ThermalNetwork::AddedEffect> gradients;
-  for (ThermalNetwork::AddedEffect& one : library.candidates(setting_of(machine, real)))
-    if (library.at(one.effect).stage() == Stage::initial) gradients.push_back(std::move(one));
-  return evidence(with_fitted_start(machine), {}) > evidence(machine, gradients);
-}
-
-}  // namespace detail
-
 /// Diagnoses why the machine `given` disagrees with the measured batches `recorded`: leaves out cells that are no
 /// readings; looks whether both are written down alike (units, signs, clocks, columns), and says so and nothing else
 /// where they are not; leaves the zero of a probe free that is set anew; fits the starts of batches that begin out of
@@ -266,7 +244,7 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
       unlike.machine = machine.name;
       return unlike;
     }
-    if (!warm.empty() && detail::starts_are_free<Scalar>(machine, real, library, options.search)) {
+    if (!warm.empty()) {
       machine = with_fitted_start(std::move(machine));
       warm[0].rule = starts_were_fitted;
     }
