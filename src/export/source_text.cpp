@@ -134,10 +134,10 @@ std::vector<std::string> facts(const ExportRequest& request) {
           ? "     it is the correction, minus the predicted error: add it to the axis command"
           : "     it is the predicted thermal error: subtract it from the axis command"};
   if (!model.features.empty())
-    lines.insert(lines.begin() + 6,
-                 "     and on channels derived from it: " + std::to_string(model.features.size()) + " in all, " +
-                     std::to_string(detail::lags_of(model).size()) + " lags; climates of training " +
-                     general_text(model.climate.lowest, 4) + " to " + general_text(model.climate.highest, 4) + " degC");
+    lines.insert(lines.begin() + 6, "     and on channels derived from it: " + std::to_string(model.features.size()) +
+                                        " in all, " + std::to_string(detail::lags_of(model).size()) +
+                                        " lags; climates of training " + general_text(model.climate.lowest, 4) +
+                                        " to " + general_text(model.climate.highest, 4) + " degC");
   for (std::size_t j = 0; j < model.errors.size(); ++j)
     lines.push_back("     " + model.errors[j] + ": clamp +-" + exact_text(settings.outputs[j].clamp_um) + " um, slew " +
                     exact_text(settings.outputs[j].slew_um_per_step) + " um per step of " +

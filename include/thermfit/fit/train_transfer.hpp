@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "thermfit/batch/known_inputs.hpp"
 #include "thermfit/features/feature_columns.hpp"
-#include "thermfit/features/known_inputs.hpp"
 #include "thermfit/fit/train.hpp"
 #include "thermfit/fit/transfer.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "thermfit/batch/climate.hpp"
 #include "thermfit/batch/error_reference.hpp"
+#include "thermfit/batch/known_inputs.hpp"
 #include "thermfit/batch/temperature_rise.hpp"
-#include "thermfit/features/known_inputs.hpp"
 #include "thermfit/features/lag.hpp"
 #include "thermfit/lazy.hpp"
 #include "thermfit/moments/moments.hpp"

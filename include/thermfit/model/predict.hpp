@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "thermfit/batch/climate.hpp"
+#include "thermfit/batch/known_inputs.hpp"
 #include "thermfit/compiled.hpp"
 #include "thermfit/error.hpp"
 #include "thermfit/features/feature_columns.hpp"
-#include "thermfit/features/known_inputs.hpp"
 #include "thermfit/model/outside_domain.hpp"
 #include "thermfit/model/trained_model.hpp"
 
