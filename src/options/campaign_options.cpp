@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "cli/table.hpp"
+#include "options/field_flags.hpp"
 #include "thermfit/findings/copy_findings.hpp"
 #include "thermfit/io/csv/named_dialect.hpp"
 #include "thermfit/io/files/file_identity.hpp"
@@ -132,6 +133,16 @@ double time_step_s(const std::string& text) {
   return step;
 }
 
+/// A command line for each dialect that has a name.
+const std::pair<std::string_view, std::string_view> dialect_examples[] = {
+    {"twincat", "thermfit check scope.csv --dialect twincat"},
+    {"lvm", "thermfit check runs/ --dialect lvm"},
+    {"catman", "thermfit check warm-up.asc --dialect catman --temperatures 'Lager*' --errors 'Verlagerung Z'"},
+    {"benchlink", "thermfit check Data.csv --dialect benchlink --temperatures '101*,102*' --errors '103*'"},
+    {"picolog", "thermfit check tc08.csv --dialect picolog --temperatures 'Front*,Rear*' --errors 'Probe*'"},
+    {"halsampler", "thermfit check warm-up.txt --dialect halsampler --columns T1,T2,Z --time-step 1"},
+};
+
 /// `Z=mm`: the last equals sign divides, so that a name may have one.
 std::vector<CsvUnit> units(const Arguments& arguments, const std::string& option) {
   std::vector<CsvUnit> all;
@@ -235,7 +246,7 @@ std::string dialects_help() {
       "command line says wins. A file that is one for sure is read so without being asked, and that is told.";
   text = wrap(text, 80, 0);
   for (const NamedDialect& one : named_dialects) {
-    text += '\n' + std::string(one.name) + '\n' + wrap("  " + std::string(one.sets), 80, 2);
+    text += '\n' + std::string(one.name) + '\n' + wrap("  " + with_flags(one.sets), 80, 2);
     std::string sets;
     const auto set = [&](const std::string& flag, std::string_view value) {
       if (!value.empty()) sets += " " + flag + " '" + std::string(value) + "'";
@@ -248,7 +259,8 @@ std::string dialects_help() {
     set("--skip-columns", one.skip_columns);
     set("--encoding", one.encoding);
     text += wrap("  as:" + sets + (one.encoding.empty() ? "" : " where it is no UTF-8"), 80, 6);
-    text += "  " + std::string(one.example) + '\n';
+    for (const auto& [name, line] : dialect_examples)
+      if (name == one.name) text += "  " + std::string(line) + '\n';
   }
   return text;
 }

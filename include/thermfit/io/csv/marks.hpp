@@ -31,6 +31,14 @@ struct MarkSeen {
 /// Counts the marks of a cell, whose place `place` tells; sets `thousands` where blanks or apostrophes group them.
 template <typename Place>
 void look_at_marks(std::string_view cell, const Place& place, MarkSeen& points, MarkSeen& commas, char& thousands) {
+  const auto count = [&](MarkSeen& seen, bool may_group) {
+    if (seen.count++ == 0) seen.place = place(), seen.text = shown(cell);
+    seen.may_group += may_group;
+  };
+  if (cell.find(',') == std::string_view::npos && parse_field(cell, '.')) {  // most cells are plain
+    if (cell.find('.') != std::string_view::npos) count(points, ungrouped(cell, '.', ',').has_value());
+    return;
+  }
   std::string_view number = trim_hidden(cell);
   if (const auto parts = split_unit_in_cell(number)) number = parts->first;
   for (const char mark : {'.', ','}) {
@@ -40,9 +48,7 @@ void look_at_marks(std::string_view cell, const Place& place, MarkSeen& points, 
     std::size_t groups = 0;
     const bool grouped = ungrouped(number, mark, other, &groups).has_value();
     if (grouped && (groups > 1 || number.find(other) != std::string_view::npos)) ++seen.groups;
-    if (!parse_grouped(number, mark, ' ') && !parse_grouped(number, mark, '\'')) continue;
-    if (seen.count++ == 0) seen.place = place(), seen.text = shown(cell);
-    seen.may_group += grouped;
+    if (parse_grouped(number, mark, ' ') || parse_grouped(number, mark, '\'')) count(seen, grouped);
   }
   for (const char mark : {'.', ','})
     for (const char group : {' ', '\''})

@@ -19,7 +19,6 @@ struct NamedDialect {
   std::string_view name;                       ///< CsvOptions::dialect
   std::string_view what;                       ///< of a file, as "a TwinCAT Scope export"
   std::string_view sets;                       ///< in words, for the user
-  std::string_view example;                    ///< of a command line
   std::string_view encoding;                   ///< where the file is no UTF-8
   char separator;                              ///< 0: from the file; as the rest, which is empty where it is not set
   std::string_view names_begin;                ///< CsvOptions::names_begin
@@ -73,42 +72,36 @@ inline constexpr std::array<NamedDialect, 6> named_dialects{{
     {"twincat", "a TwinCAT Scope export",
      "Beckhoff TwinCAT 3 Scope, export as CSV: lines about the project and about each channel, names in the last line "
      "that begins with Name, then a column of times in ms before every channel. The channels are put on one clock.",
-     "thermfit check scope.csv --dialect twincat", "cp1252", 0, "Name", "", "Name", "ms", "",
+     "cp1252", 0, "Name", "", "Name", "ms", "",
      [](const detail::CsvEvidence& evidence) {
        return (detail::begins(evidence, "Name") && detail::has_line(evidence, "Starttime of export")) ||
               (!evidence.lines.empty() && detail::is_scope_header(evidence.lines.front().text));
      }},
     {"lvm", "a LabVIEW measurement",
      "LabVIEW measurement file (Write To Measurement File, .lvm): header blocks, units in the line Y_Unit_Label, names "
-     "in "
-     "the line that begins with X_Value, which is the clock in s: one for all or one left of each channel.",
-     "thermfit check runs/ --dialect lvm", "cp1252", 0, "X_Value", "Y_Unit_Label", "X_Value", "s", "",
+     "in the line that begins with X_Value, which is the clock in s: one for all or one left of each channel.",
+     "cp1252", 0, "X_Value", "Y_Unit_Label", "X_Value", "s", "",
      [](const detail::CsvEvidence& evidence) { return detail::begins(evidence, "LabVIEW Measurement"); }},
     {"catman", "a catman export",
      "HBM catman, export as ASCII with channel information: what stands above the names is left out, units below them "
      "are read, a clock 'Zeit 1 - …' or 'Time 1 - …' a sampling rate, ISO 8859-1 or Windows-1252 where it is no UTF-8.",
-     "thermfit check warm-up.asc --dialect catman --temperatures 'Lager*' --errors 'Verlagerung Z'", "cp1252", 0, "",
-     "", "", "", "",
+     "cp1252", 0, "", "", "", "", "",
      [](const detail::CsvEvidence& evidence) { return detail::begins(evidence, "HBM_CATMAN_DATAFILE"); }},
     {"benchlink", "a BenchLink Data Logger export",
      "Keysight (Agilent) BenchLink Data Logger, export as CSV: the setup above the names is left out, names in the "
-     "last "
-     "line that begins with Scan, the clock is Time; the columns Scan and Alarm are left out.",
-     "thermfit check Data.csv --dialect benchlink --temperatures '101*,102*' --errors '103*'", "cp1252", 0, "Scan", "",
-     "Time", "", "Scan,Alarm *",
+     "last line that begins with Scan, the clock is Time; the columns Scan and Alarm are left out.",
+     "cp1252", 0, "Scan", "", "Time", "", "Scan,Alarm *",
      [](const detail::CsvEvidence& evidence) {
        return detail::begins(evidence, "Name:") && detail::has_line(evidence, "Scan Control:");
      }},
     {"picolog", "a PicoLog export",
      "Pico Technology PicoLog, export as CSV: the first column has no name and is the clock, in s where it is a "
      "number.",
-     "thermfit check tc08.csv --dialect picolog --temperatures 'Front*,Rear*' --errors 'Probe*'", "cp1252", 0, "", "",
-     "column1", "s", "", detail::is_picolog_header},
+     "cp1252", 0, "", "", "column1", "s", "", detail::is_picolog_header},
     {"halsampler", "the output of halsampler",
      "LinuxCNC halsampler: numbers between blanks, lost samples marked overrun. It has neither names nor a clock: say "
-     "--columns, and --time-step with the period of the thread that samples.",
-     "thermfit check warm-up.txt --dialect halsampler --columns T1,T2,Z --time-step 1", "", ' ', "", "", "", "", "",
-     nullptr},
+     "CsvOptions::columns, and CsvOptions::time_step_s with the period of the thread that samples.",
+     "", ' ', "", "", "", "", "", nullptr},
 }};
 
 namespace detail {

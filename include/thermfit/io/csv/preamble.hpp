@@ -81,7 +81,10 @@ inline std::size_t lines_before_names(const CsvEvidence& evidence, char separato
       with_empty.push_back(fields.size());
       while (!broken && fields.size() > 1 && fields.back().text.empty()) fields.pop_back();
       counts.push_back(broken ? 0 : fields.size());
-      kinds.push_back(broken ? '?' : is_number_line(fields) ? 'n' : is_name_line(fields) ? 't' : '?');
+      kinds.push_back(broken || fields.size() < 2 ? '?'
+                      : is_number_line(fields)    ? 'n'
+                      : is_name_line(fields)      ? 't'
+                                                  : '?');
     }
     if (!counts.empty()) first_fields = counts.front();
     for (std::size_t i = 0; i < counts.size(); ++i) {

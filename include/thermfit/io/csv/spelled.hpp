@@ -43,6 +43,10 @@ inline std::size_t group_mark(std::string_view text, char group) {
 inline std::optional<std::string> ungrouped(std::string_view text, char group, char decimal_mark,
                                             std::size_t* groups = nullptr) {
   if (text.size() < 5 || text.size() > 60) return std::nullopt;
+  if (group == '.' || group == ',') {  // most often the first mark is not followed by three digits
+    const std::size_t mark = text.find(group);
+    if (mark == std::string_view::npos || mark + 4 > text.size()) return std::nullopt;
+  }
   std::string number;
   if (starts_with(text, "\xE2\x88\x92"))
     number = "-", text.remove_prefix(3);
