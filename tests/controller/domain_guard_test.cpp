@@ -87,3 +87,22 @@ TEST_CASE("a sample that is no number shrinks to nothing", "[controller]") {
   CHECK(guard.share_inside(model.domain, {std::nan(""), 0, 0}) == 0);
   CHECK(guard.share_inside(model.domain, {1e300, 0, 0}) == 0);
 }
+
+TEST_CASE("all features of a lost sensor are filled in so that none of them has a residual", "[controller]") {
+  const TrainedModel trained = example_transfer_model();
+  const auto model = narrow_model<double>(trained);
+  DomainGuard<double, dynamic_size, dynamic_size> guard;
+  guard.reset(model.domain);
+  const auto missing = [&](std::size_t f) { return model.features.channels[f].of(0); };
+  std::vector<double> inputs(model.inputs());
+  for (std::size_t f = 0; f < inputs.size(); ++f) inputs[f] = std::sin(1 + 2. * static_cast<double>(f)) * 5 + 4;
+  guard.fill_in_all(model.domain, inputs, missing);
+  const Vector z = (Eigen::Map<const Vector>(inputs.data(), static_cast<Index>(inputs.size())) - trained.domain.mean)
+                       .cwiseQuotient(trained.domain.scale);
+  const Vector residual = z - trained.domain.loadings * (trained.domain.rotations.transpose() * z);
+  double most = 0, others = 0;
+  for (std::size_t f = 0; f < inputs.size(); ++f)
+    (missing(f) ? most : others) = std::max(missing(f) ? most : others, std::abs(residual(static_cast<Index>(f))));
+  CAPTURE(most, others);
+  CHECK(most < 1e-3 * others);
+}
