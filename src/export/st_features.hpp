@@ -222,20 +222,27 @@ class StFeatures : public StBlock<Scalar> {
   void fill_in_all(std::size_t sensor) {
     const auto& domain = model_.domain;
     const std::vector<std::size_t> own = made_of(sensor);
-    const auto shared = [&](std::size_t f, std::size_t g) {
+    const auto weight = [&](std::size_t a, std::size_t f, bool spanned) {
+      return spanned ? domain.rotations[a][f] * domain.inverse_score_variance[a] : domain.loadings[a][f];
+    };
+    const auto shared = [&](std::size_t f, std::size_t g, bool spanned) {
       Scalar sum = 0;
-      for (std::size_t a = 0; a < domain.rotations.size(); ++a) sum += domain.loadings[a][f] * domain.rotations[a][g];
+      for (std::size_t a = 0; a < domain.rotations.size(); ++a) sum += weight(a, f, spanned) * domain.rotations[a][g];
       return sum;
     };
     for (const std::size_t f : own) set(input(f), "0.0");
     for (int sweep = 0; sweep < DomainGuard<Scalar, dynamic_size, dynamic_size>::fill_in_sweeps; ++sweep)
       for (const std::size_t f : own) {
+        const bool spanned = !(shared(f, f, false) < Scalar(0.99));
+        const Scalar whole = shared(f, f, spanned);
         set("expectation", "0.0");
         for (std::size_t a = 0; a < domain.rotations.size(); ++a)
-          set("expectation", "expectation + " + real(domain.loadings[a][f]) + " * " + numbered("score", a));
+          set("expectation", "expectation + " + real(weight(a, f, spanned)) + " * " + numbered("score", a));
         for (const std::size_t g : own)
-          if (g != f) set("expectation", "expectation + " + real(shared(f, g)) + " * " + input(g));
-        set(input(f), shared(f, f) < Scalar(0.99) ? "expectation / " + real(1 - shared(f, f)) : std::string("0.0"));
+          if (g != f) set("expectation", "expectation + " + real(shared(f, g, spanned)) + " * " + input(g));
+        set(input(f), !spanned    ? "expectation / " + real(1 - whole)
+                      : whole > 0 ? "(-expectation) / " + real(whole)
+                                  : std::string("0.0"));
       }
     for (const std::size_t f : own)
       set(input(f), real(domain.mean[f]) + " + " + input(f) + " / " + real(domain.inverse_scale[f]));

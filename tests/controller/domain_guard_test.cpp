@@ -1,5 +1,6 @@
 #include "thermfit/controller/domain_guard.hpp"
 
+#include <Eigen/QR>
 #include <iostream>
 #include <random>
 
@@ -86,6 +87,30 @@ TEST_CASE("a sample that is no number shrinks to nothing", "[controller]") {
   DomainGuard<double, 3, 2> guard;
   CHECK(guard.share_inside(model.domain, {std::nan(""), 0, 0}) == 0);
   CHECK(guard.share_inside(model.domain, {1e300, 0, 0}) == 0);
+}
+
+TEST_CASE("where the components span all features, those of a lost sensor are the ones of least T2", "[controller]") {
+  TrainedModel trained = example_transfer_model();
+  const Index n = trained.inputs();
+  Matrix whole = Matrix::Random(n, n) + 2 * Matrix::Identity(n, n);
+  trained.domain.rotations = Eigen::HouseholderQR<Matrix>(whole).householderQ();
+  trained.domain.loadings = trained.domain.rotations;
+  trained.domain.score_variance = Vector::LinSpaced(n, 4, 1);
+  trained.domain.spe_limit_99 = 0;
+  const auto model = narrow_model<double>(trained);
+  DomainGuard<double, dynamic_size, dynamic_size> guard;
+  guard.reset(model.domain);
+  const auto missing = [&](std::size_t f) { return model.features.channels[f].of(0); };
+  std::vector<double> inputs(model.inputs());
+  for (std::size_t f = 0; f < inputs.size(); ++f) inputs[f] = std::sin(1 + 2. * static_cast<double>(f)) * 5 + 4;
+  guard.fill_in_all(model.domain, inputs, missing);
+  const Vector z =
+      (Eigen::Map<const Vector>(inputs.data(), n) - trained.domain.mean).cwiseQuotient(trained.domain.scale);
+  const Vector slope =
+      trained.domain.rotations *
+      (trained.domain.rotations.transpose() * z).cwiseQuotient(trained.domain.score_variance);  // of T2 / 2
+  for (std::size_t f = 0; f < inputs.size(); ++f)
+    if (missing(f)) CHECK(std::abs(slope(static_cast<Index>(f))) < 1e-3 * slope.cwiseAbs().maxCoeff());
 }
 
 TEST_CASE("all features of a lost sensor are filled in so that none of them has a residual", "[controller]") {

@@ -42,7 +42,8 @@ class DomainGuard {
 
   /// The same for all inputs that are `missing`, which one sensor's features are: those that leave none of them a
   /// residual, z = (1 - P R')^-1 P (scores of the others), by Gauss and Seidel's sweeps, which converge as each lowers
-  /// SPE. An input that the others do not tell stays at the mean.
+  /// SPE. Where the components span an input it has no residual: then the value of least T2,
+  /// z = -sum_a r_a t_a / v_a / sum_a r_a^2 / v_a with the scores t of the others and their variances v.
   template <class Missing>
   void fill_in_all(const Domain& domain, Row<Scalar, Inputs>& inputs, Missing missing) noexcept {
     const std::size_t n = domain.mean.size();
@@ -57,14 +58,13 @@ class DomainGuard {
     for (int sweep = 0; sweep < fill_in_sweeps; ++sweep)
       for (std::size_t f = 0; f < n; ++f) {
         if (!missing(f)) continue;
-        Scalar expected = 0, own = 0;
-        for (std::size_t a = 0; a < scores_.size(); ++a) {
-          expected += domain.loadings[a][f] * scores_[a];
-          own += domain.loadings[a][f] * domain.rotations[a][f];
-        }
+        const bool spanned = !(shared(domain, f, f, false) < Scalar(0.99));
+        Scalar expected = 0;
+        for (std::size_t a = 0; a < scores_.size(); ++a) expected += weight(domain, a, f, spanned) * scores_[a];
         for (std::size_t g = 0; g < n; ++g)
-          if (g != f && missing(g)) expected += shared(domain, f, g) * inputs[g];
-        inputs[f] = own < Scalar(0.99) ? expected / (1 - own) : Scalar(0);
+          if (g != f && missing(g)) expected += shared(domain, f, g, spanned) * inputs[g];
+        const Scalar own = shared(domain, f, f, spanned);
+        inputs[f] = !spanned ? expected / (1 - own) : own > 0 ? -expected / own : Scalar(0);
       }
     for (std::size_t f = 0; f < n; ++f)
       if (missing(f)) inputs[f] = domain.mean[f] + inputs[f] / domain.inverse_scale[f];
@@ -97,10 +97,15 @@ class DomainGuard {
   }
 
  private:
-  /// How much of input g the components give to input f.
-  static Scalar shared(const Domain& domain, std::size_t f, std::size_t g) noexcept {
+  /// What a score gives to input f: its loading, or of one that the components span its pull on T2.
+  static Scalar weight(const Domain& domain, std::size_t a, std::size_t f, bool spanned) noexcept {
+    return spanned ? domain.rotations[a][f] * domain.inverse_score_variance[a] : domain.loadings[a][f];
+  }
+  /// How much of input g the components so give to input f.
+  static Scalar shared(const Domain& domain, std::size_t f, std::size_t g, bool spanned) noexcept {
     Scalar sum = 0;
-    for (std::size_t a = 0; a < domain.rotations.size(); ++a) sum += domain.loadings[a][f] * domain.rotations[a][g];
+    for (std::size_t a = 0; a < domain.rotations.size(); ++a)
+      sum += weight(domain, a, f, spanned) * domain.rotations[a][g];
     return sum;
   }
 
