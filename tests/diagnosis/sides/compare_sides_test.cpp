@@ -111,6 +111,14 @@ TEST_CASE("cells that are no readings are left out and told, and the diagnosis i
   CHECK(told == std::vector<std::string>{"K02 T5 13", "K03 T2 41-42"});
 }
 
+TEST_CASE("two thermometers of one node read alike in the simulation, and that is no copy, whatever fault one has") {
+  ThermalNetwork machine = bench::machine();
+  machine.sensors[2].node = machine.sensors[0].node;
+  Campaign real = bench::campaign(machine, 5, 3);
+  for (Batch& batch : real) batch.temperatures.values.col(2) += Vector::LinSpaced(batch.rows(), 0, 9);  // it drifts
+  for (const DataProblem& one : compare_machine(machine, real, standard_effects())) CHECK(one.kind != Kind::copied);
+}
+
 TEST_CASE("a machine that starts warm has no bad first cell") {
   Campaign real = bench::campaign(bench::machine(), 3, 3);
   for (Batch& batch : real) batch.temperatures.values(0, 0) += 20;

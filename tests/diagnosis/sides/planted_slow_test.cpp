@@ -228,7 +228,9 @@ std::vector<Plant> clock_plants() {
 
 bool found_it(const std::vector<DataProblem>& found, const Plant& plant, const std::vector<std::string>& names) {
   for (const DataProblem& one : found) {
-    if (one.kind != plant.kind || (!one.certain && one.kind != Kind::left_out)) continue;
+    const bool suspicion =
+        one.kind == Kind::left_out || (one.kind == Kind::copied && one.side == DataProblem::Side::simulated);
+    if (one.kind != plant.kind || (!one.certain && !suspicion)) continue;
     if (names[0] == "time") return true;
     if (one.kind == Kind::left_out) return one.channel == names[0];
     if (one.names.size() != names.size()) continue;

@@ -82,6 +82,7 @@ class CopiedColumns {
     }
     DataProblem told = of_.problem(Kind::copied, {of_.channel(original).name, of_.channel(copy).name}, nats);
     told.side = simulated ? Side::simulated : Side::measured;
+    if (simulated) told.certain = false;  // one of two thermometers on one part may have a fault of its own
     told.batches = of_.names_of(same);
     told_.push_back(std::move(told));
   }

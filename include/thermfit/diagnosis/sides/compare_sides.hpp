@@ -46,7 +46,7 @@ std::vector<DataProblem> compare_sides(const Sides& sides, const SideLimits& lim
   if (std::any_of(found.begin(), found.end(), [](const DataProblem& one) { return one.certain; })) return found;
   join(detail::CopiedColumns<Scalar>(of).run(false));
   if (found.empty()) join(detail::ExchangedColumns<Scalar>(of).run());
-  if (found.empty()) join(detail::CopiedColumns<Scalar>(of).run(true));
+  if (found.empty() && !sides.computed) join(detail::CopiedColumns<Scalar>(of).run(true));
   join(detail::Delays<Scalar>(of).run());
   for (std::size_t c = 0; c < sides.channels.size(); ++c) join(detail::Datums<Scalar>(of).run(c));
   return found;

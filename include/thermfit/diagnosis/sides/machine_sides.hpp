@@ -26,6 +26,7 @@ Sides sides_of(const ThermalNetwork& machine, const Lazy<MachineRecord, Scalar>&
   Lazy<Sides, Scalar> result;
   result.batches = seen.names;
   result.time_s = seen.time_s;
+  result.computed = true;
   result.largest_um_per_K = largest_expansion_um_per_K(machine);
   const Lazy<std::vector<Simulation>, Scalar> simulated = simulate<Scalar>(machine, seen.excitations, library);
   std::vector<Index> columns;

@@ -29,6 +29,7 @@ struct Sides {
   std::vector<std::string> batches;   ///< names
   std::vector<Vector> time_s;         ///< by batch
   std::vector<SideChannel> channels;  ///< temperatures, then displacements
+  bool computed = false;              ///< simulated by a network: columns that are equal are thermometers of one node
   double largest_um_per_K = 0;        ///< of the simulated parts; 0 where that is not known
   /// How a channel may differ from what is simulated although nothing is wrong with the data: samples of all batches
   /// below each other x directions, each as far as one prior standard deviation moves it. Dear: asked on suspicion.
