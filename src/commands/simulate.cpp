@@ -83,7 +83,8 @@ Exit run(const Arguments& arguments, Console& console) {
   const std::vector<Excitation> excitations = excitations_of(network, campaign);
   const std::vector<Simulation> simulations = simulate(network, excitations, effects);
   for (const DataProblem& one : warm_start_problem(network, excitations))
-    console.note(place_of(one) + ": " + what_of(one) + ", the simulation starts at the room; " + remedy_of(one, SimulatorKind::network));
+    console.note(place_of(one) + ": " + what_of(one) + ", the simulation starts at the room; " +
+                 remedy_of(one, SimulatorKind::network));
   if (network.ambient.rule == ThermalNetwork::Ambient::Rule::unmeasured)
     console.note("nothing measures the room: it is held where the colder parts start; calibrate and diagnose fit it");
 
