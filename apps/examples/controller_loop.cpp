@@ -19,6 +19,7 @@ using Compensator = thermfit::Compensator<double, 2, 1, 1>;  // two thermometers
 
 // error_um = 0.5 + 3 spindle + 1 column, temperatures as rise in K; without a sensor, the other one alone.
 constexpr Compensator::Model model{true,
+                                   {},  // no derived channels
                                    {{{{{3, 1}}}}, {{.5}}},
                                    {{{{{{{0, 9}}}}, {{.5}}}, {{{{{3.4, 0}}}}, {{.5}}}}},
                                    {{true, true}},
@@ -33,6 +34,8 @@ constexpr Compensator::Settings settings{{{thermometer, thermometer}},
                                          {5, 30, 1, 1800},  // lost after, trusted after, moved, all frozen after
                                          600,               // steps an offset may be held
                                          thermfit::DomainPolicy::warn,
+                                         {},            // no derived channels
+                                         {},            // no probe
                                          {{{60, .2}}},  // clamp um, slew um a step
                                          thermfit::OutputSign::correction,
                                          {},  // no zero without a datum

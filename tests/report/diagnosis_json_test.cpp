@@ -28,8 +28,8 @@ Diagnosis example() {
   diagnosis.gap.per_sensor = {{"T1", "K", {.5, .2, .1, .05}}};
   diagnosis.where.stages = {{"heat", .9}};
   diagnosis.where.places = {{"head_front", .8}};
-  diagnosis.where.conditions = {{"spindle_rpm", "", true, {4500, 6000}, .7, 3, .3},
-                                {"phase", "warm-up", false, {}, .6, 2, .2}};
+  diagnosis.where.conditions = {{"spindle_rpm", "", true, true, {4500, 6000}, .7, 3, .3},
+                                {"phase", "warm-up", false, false, {}, .6, 2, .2}};
   diagnosis.where.frequency = {{{300, std::numeric_limits<double>::infinity()}, .4}};
   return diagnosis;
 }
