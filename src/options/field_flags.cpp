@@ -3,6 +3,7 @@
 #include "thermfit/controller/settings_for.hpp"
 #include "thermfit/diagnosis/outputs/diagnose_outputs.hpp"
 #include "thermfit/fit/train.hpp"
+#include "thermfit/fit/train_transfer.hpp"
 #include "thermfit/io/csv/options.hpp"
 
 namespace thermfit::cli {
@@ -20,6 +21,7 @@ bool continues_name(char c) {
 
 const std::vector<FieldFlag>& field_flags() {
   static const std::vector<FieldFlag> table{
+      THERMFIT_FLAG(TransferPlan, differences, "--features"),
       THERMFIT_FLAG(CsvOptions, separator, "--delimiter"),
       THERMFIT_FLAG(CsvOptions, decimal_mark, "--decimal"),
       THERMFIT_FLAG(CsvOptions, thousands, "--thousands"),

@@ -137,7 +137,7 @@ inline std::optional<double> unit_factor(std::string_view text) {
 /// (0.1 um, 1.25um, 1/1000 mm, as some controls count), and of a length also with a minus before it (-um: corrections,
 /// where thermfit counts errors); nothing when unknown. Allocates.
 inline std::optional<Unit> find_unit(std::string_view text) {
-  if (detail::starts_with(text, "-") && text.size() > 1 && text[1] != '-') {
+  if (detail::starts_with(text, "-") && text.size() > 1 && text[1] != '-' && !(text[1] >= '0' && text[1] <= '9')) {
     auto unit = find_unit(text.substr(1));
     if (!unit || unit->quantity != Quantity::length) return std::nullopt;
     unit->numerator = -unit->numerator;

@@ -97,7 +97,7 @@ inline void require_no_inputs(const TrainedModel& model, const std::string& plac
     if (of_input(model.features[f].kind))
       throw Error(place + ": transfer.features[" + std::to_string(f) + "]",
                   "'" + model.input_name(static_cast<Index>(f)) + "', a known input", "features of temperatures",
-                  "predict takes it; here fit a model without inputs: --features rise,lag,climate");
+                  "predict takes it; here fit a model on rises, lags and climate alone");
 }
 
 }  // namespace thermfit
