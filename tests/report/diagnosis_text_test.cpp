@@ -1,6 +1,6 @@
 #include "report/diagnosis_text.hpp"
 
-#include <algorithm>
+#include <regex>
 #include <string>
 
 #include "support/catch.hpp"
@@ -32,10 +32,8 @@ FoundEffect coolant(double confidence, double closes) {
   return found;
 }
 
-std::string unbroken(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
+/// The text on one line, runs of blanks as one.
+std::string unbroken(const std::string& text) { return std::regex_replace(text, std::regex("\\s+"), " "); }
 }  // namespace
 
 TEST_CASE("a part of the cause is told first, with its place, its driver and what it closes, and is no name",
@@ -57,7 +55,7 @@ TEST_CASE("a suspicion is told with its probability, and the machine is not said
   diagnosis.suspected = {coolant(.34, .95)};
   const std::string text = unbroken(cli::diagnosis_text(diagnosis));
   CHECK(text.find("lacks nothing") == std::string::npos);
-  CHECK(text.find("Suspected  - coolant at head_front (driven by pump), 34 %: the best account of what is left") !=
+  CHECK(text.find("Suspected - coolant at head_front (driven by pump), 34 %: the best account of what is left") !=
         std::string::npos);
 }
 
@@ -67,7 +65,7 @@ TEST_CASE("a number that calibration moved by more than three prior deviations i
   diagnosis.verdict = Verdict::miscalibration;
   diagnosis.calibration = {{"offset of T5", "K", 0, 2.7, 5, true}, {"capacity of bed", "J/K", 1e4, 2e4, 2, true}};
   const std::string text = unbroken(cli::diagnosis_text(diagnosis));
-  CHECK(text.find("Calibrated beyond belief  - offset of T5: 2.7 K instead of 0, 5.0 prior deviations") !=
+  CHECK(text.find("Calibrated beyond belief - offset of T5: 2.7 K instead of 0, 5.0 prior deviations") !=
         std::string::npos);
   CHECK(text.find("lacks nothing") == std::string::npos);
   CHECK(text.find("capacity of bed: 2") == std::string::npos);
