@@ -68,10 +68,7 @@ class CopiedColumns {
         rise.segment(row, rows).array() -= start(row), other.segment(row, rows).array() -= start(row);
         row += rows;
       }
-      // What one thermometer is off by all the time is a fault of it or of its place, and no course of its own.
-      const VectorX<Scalar> course = apart.array().isFinite().select(apart, 0);
-      const double own = rms_of<Scalar>(VectorX<Scalar>(course.array() - course.mean()));
-      const double share = own / std::max({rms_of<Scalar>(rise), rms_of<Scalar>(other), 1e-9});
+      const double share = differ / std::max({rms_of<Scalar>(rise), rms_of<Scalar>(other), 1e-9});
       const auto misfit = [&](std::size_t c) {
         const auto [y, x] = of_.courses(c, c, same);
         return std::hypot(rms_of<Scalar>(VectorX<Scalar>(y - x)), of_.channel(c).noise);
