@@ -204,7 +204,7 @@ std::vector<std::string> suspected(const Diagnosis& diagnosis) {
   std::vector<std::string> lines;
   for (const FoundEffect& found : diagnosis.suspected) {
     std::string line = title_of(found.effect, found.location, found.driver) + ", " + confidence_text(found.confidence) +
-                       ": the best account of what is left, short of evidence; closes " + percent(found.closes) +
+                       ": the best account of what is left, not beyond doubt; closes " + percent(found.closes) +
                        " of it";
     for (const Rival& rival : found.alternatives)
       line += "; or " + title_of(rival.effect, rival.location, rival.driver) + ", " + confidence_text(rival.confidence);

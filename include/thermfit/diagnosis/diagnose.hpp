@@ -188,8 +188,8 @@ template <typename Scalar = double>
 NextExperiment experiment_after(const SearchResult& found, const Judgement& judgement, const Diagnosis& diagnosis,
                                 const EffectLibrary& library) {
   std::vector<FittedRival> rivals = fitted_rivals<Scalar>(found, judgement);
-  if (judgement.effects.empty() && !judgement.suspicions.suspected.empty()) {
-    const FoundEffect& one = judgement.suspicions.suspected[0];
+  if (judgement.effects.empty() && !diagnosis.suspected.empty()) {
+    const FoundEffect& one = diagnosis.suspected[0];
     rivals = {{{one.effect, one.location, one.driver, one.confidence}, found.single[0].fit.network()},
               {{calibration_alone, "", "", 1 - one.confidence}, found.calibrated.fit.network()}};
   }
@@ -269,6 +269,8 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
   diagnosis.gap = gap_of(found.seen, judgement.levels, options.seed, !found.folds.empty());
   diagnosis.gap.transfer = detail::transfer_by_level<Scalar>(found, judgement, machine, real, library);
   diagnosis.where = where_of(found, judgement, machine, real, library);
+  if (!diagnosis.where.agrees)  // that something acts just there is not beyond doubt then
+    for (FoundEffect& one : std::exchange(diagnosis.parts, {})) diagnosis.suspected.push_back(std::move(one));
   diagnosis.remaining = detail::remaining_of<Scalar>(found, judgement, diagnosis.gap, real, options.seed);
   diagnosis.calibration = detail::calibration_moves<Scalar>(found.at(judgement.best).fit);
   diagnosis.fitted_batches = fitted_batches<Scalar>(found.at(judgement.best).fit, found.seen);

@@ -111,10 +111,11 @@ Where where_of(const SearchResult& found, const Judgement& judgement, const Ther
   for (const DisturbedPlace& one : places)
     if (sum > 0 && one.gain_beside > 0) where.places.push_back({one.name, one.gain_beside / sum});
   where.stages = detail::stage_shares(judgement.effects, places, library);
-  if (sum > 0 && !judgement.effects.empty() && !detail::views_agree(places, judgement.effects[0], given, library)) {
+  const std::vector<FoundEffect>& told = judgement.effects.empty() ? judgement.suspicions.parts : judgement.effects;
+  if (sum > 0 && !told.empty() && !detail::views_agree(places, told[0], given, library)) {
     where.agrees = false;
     where.free_place = places[0].name;
-    where.effect_place = judgement.effects[0].location;
+    where.effect_place = told[0].location;
   }
   return where;
 }
