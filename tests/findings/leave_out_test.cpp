@@ -49,7 +49,8 @@ TEST_CASE("bad readings are left out as rows of their batch", "[findings]") {
 TEST_CASE("a sensor that is faulty in some batches is left out of all, since models need the same points",
           "[findings]") {
   Campaign campaign = vcenter55();
-  for (const std::size_t b : {5, 6}) temperature(campaign[b], 7).tail(69).setConstant(temperature(campaign[b], 7)(10));
+  for (const std::size_t b : {5u, 6u})
+    temperature(campaign[b], 7).tail(69).setConstant(temperature(campaign[b], 7)(10));
   const LeaveOut left = leave_out_of(campaign);
   CHECK(left.temperatures == std::vector<std::string>{"T7"});
   CHECK(left.batches.empty());
@@ -93,7 +94,7 @@ TEST_CASE("of a faulty sensor and the batches it is faulty in, what costs fewer 
       batch.temperatures.names.resize(2);
       batch.temperatures.values.conservativeResize(batch.rows(), 2);
     }
-    for (const std::size_t b : {2, 4, 9}) temperature(campaign[b], 1).setConstant(-127);
+    for (const std::size_t b : {2u, 4u, 9u}) temperature(campaign[b], 1).setConstant(-127);
     const LeaveOut left = leave_out_of(campaign);
     CHECK(left.batches == std::vector<std::size_t>{2, 4, 9});
     CHECK(left.temperatures.empty());

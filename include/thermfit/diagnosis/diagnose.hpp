@@ -110,6 +110,19 @@ std::vector<RuledOut> ruled_out(const SearchResult& found, const Judgement& judg
   return result;
 }
 
+/// That something acts just there is not beyond doubt where the effect-free view says another place: suspected at most.
+inline void doubt_parts(Diagnosis& diagnosis, double doubt, const Thresholds& thresholds) {
+  for (FoundEffect& one : std::exchange(diagnosis.parts, {})) {
+    one.confidence *= doubt;
+    for (Rival& rival : one.alternatives) rival.confidence *= doubt;
+    if (one.confidence < thresholds.least_suspected)
+      diagnosis.ruled_out.insert(diagnosis.ruled_out.begin(),
+                                 {one.effect, one.location, RuledOutBy::remains, one.closes});
+    else
+      diagnosis.suspected.push_back(std::move(one));
+  }
+}
+
 /// What few batches, constant inputs and inputs that are on in one batch alone do not allow to say.
 template <typename Scalar = double>
 std::vector<WeakerClaim> claims_of(const SearchResult& found, const ThermalNetwork& given, const Setting& setting) {
@@ -269,12 +282,11 @@ Diagnosis diagnose(const ThermalNetwork& given, const Campaign& recorded, const 
   diagnosis.gap = gap_of(found.seen, judgement.levels, options.seed, !found.folds.empty());
   diagnosis.gap.transfer = detail::transfer_by_level<Scalar>(found, judgement, machine, real, library);
   diagnosis.where = where_of(found, judgement, machine, real, library);
-  if (!diagnosis.where.agrees)  // that something acts just there is not beyond doubt then
-    for (FoundEffect& one : std::exchange(diagnosis.parts, {})) diagnosis.suspected.push_back(std::move(one));
   diagnosis.remaining = detail::remaining_of<Scalar>(found, judgement, diagnosis.gap, real, options.seed);
   diagnosis.calibration = detail::calibration_moves<Scalar>(found.at(judgement.best).fit);
   diagnosis.fitted_batches = fitted_batches<Scalar>(found.at(judgement.best).fit, found.seen);
   diagnosis.ruled_out = detail::ruled_out<Scalar>(found, judgement);
+  if (!diagnosis.where.agrees) detail::doubt_parts(diagnosis, judgement.suspicions.doubt, options.thresholds);
   diagnosis.data_problems = std::move(problems);
   diagnosis.weaker_claims = detail::claims_of<Scalar>(found, machine, setting);
   diagnosis.judged_by = named_numbers(options.thresholds);

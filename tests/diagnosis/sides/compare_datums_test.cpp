@@ -16,7 +16,7 @@ using Kind = DataProblem::Kind;
 Campaign plant(const std::vector<double>& zeros_um) {
   ThermalNetwork machine = bench::machine();
   machine.heat_sources[0].power_W *= 1.4;
-  Campaign campaign = bench::campaign(machine, static_cast<int>(zeros_um.size()), 3);
+  Campaign campaign = bench::campaign(machine, zeros_um.size(), 3);
   for (std::size_t b = 0; b < campaign.size(); ++b) campaign[b].errors.values.array() += zeros_um[b];
   return campaign;
 }

@@ -65,7 +65,7 @@ TEST_CASE("names that are logged at times of their own are put on one clock", "[
   const Batch batch = read_text(text).batches.front();
   REQUIRE(batch.rows() == 10);
   for (Index row = 0; row < batch.rows(); ++row) {
-    CHECK(batch.time_s(row) == 60 * row + 15);
+    CHECK(batch.time_s(row) == 60 * static_cast<double>(row) + 15);
     CHECK(batch.errors.values(row, 0) == Approx(0.5 * batch.time_s(row)));
   }
 }

@@ -39,7 +39,7 @@ TEST_CASE("channels with clocks of their own are put on the slowest, which is to
     REQUIRE(batch.rows() == 10);  // 60 … 600 s: T2 begins at 5 s
     for (Index row = 0; row < batch.rows(); ++row) {
       const double time = batch.time_s(row);
-      CHECK(time == 60 * (row + 1));
+      CHECK(time == 60 * static_cast<double>(row + 1));
       CHECK(batch.temperatures.values(row, 0) == Approx(line(time, 20, 0.01)));
       CHECK(batch.temperatures.values(row, 1) == Approx(line(time, 21, 0.02)));
       CHECK(batch.errors.values(row, 0) == Approx(line(time, 0, 0.5)));

@@ -16,6 +16,7 @@ namespace thermfit {
 struct Suspicions {
   std::vector<FoundEffect> parts;      ///< acts beyond doubt, more remains; at most one
   std::vector<FoundEffect> suspected;  ///< the best account; at most one
+  double doubt = 1;  ///< what is left of the probability of a part of the cause where its place is in doubt, 0…1
 };
 
 /// What may be told where `naming` names nothing, or its names have no `proof`.
@@ -48,6 +49,7 @@ Suspicions suspicions_of(const SearchContext& context, const SearchResult& found
       part ? 0.5 : std::min(0.5, known), thresholds);
   one.closes = closure.share;
   if (part) {
+    result.doubt = std::min(1.0, known / 0.5);
     result.parts.push_back(std::move(one));
   } else if (one.confidence >= thresholds.least_suspected) {
     result.suspected.push_back(std::move(one));
