@@ -355,8 +355,8 @@ class OutputsDiagnosis {
     for (Index c = 0; c < campaign_.channel_count(); ++c) {
       const PairedChannel& one = channel(c);
       if (!campaign_.is_output(c) || one.noise <= 0) continue;
-      before += std::max(0., std::pow(first_[static_cast<std::size_t>(c)].calibrated / one.noise, 2) - 1);
-      after += std::max(0., std::pow(one.calibrated / one.noise, 2) - 1);
+      before += beyond_noise(first_[static_cast<std::size_t>(c)].calibrated, one);
+      after += beyond_noise(one.calibrated, one);
     }
     return {before, after};
   }
@@ -433,11 +433,15 @@ class OutputsDiagnosis {
                     (like_lumping ? limits_.known_like_lumping : 0));
   }
 
+  /// The square of a gap (rms) of a channel beyond its noise, in squares of it.
+  static double beyond_noise(double rms, const PairedChannel& channel) {
+    return std::max(0., std::pow(rms / channel.noise, 2) - 1);
+  }
+
   /// Share of the squared gap `from` (rms) of a channel, beyond its noise, that is closed now, and what is left of it
   /// in squares of the noise.
   std::pair<double, double> closed_and_left(double from, const PairedChannel& now) const {
-    const auto beyond = [&](double rms) { return std::max(0., std::pow(rms / now.noise, 2) - 1); };
-    const double open = beyond(from), left = beyond(now.calibrated);
+    const double open = beyond_noise(from, now), left = beyond_noise(now.calibrated, now);
     return {open > 0 ? std::clamp(1 - left / open, 0., 1.) : 1, left};
   }
 
